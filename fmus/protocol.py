@@ -7,10 +7,11 @@ only one build can refuse is said where it is refused.
 
 from enum import IntFlag
 
-ANY_NUMBER, FROM_START_ON, NEAR_ITS_TIME = (
+ANY_NUMBER, FROM_START_ON, THE_START_TIME, WITHIN_A_SAMPLE = (
     "any finite number",
     "the start time and later",
-    "the number of ticks up to its time",
+    "the start time, before the end of initialization mode",
+    "from -1 to 1",
 )
 
 TIME_TOLERANCE = 1e-6
@@ -30,9 +31,6 @@ class Mode(IntFlag):
     EVENT = 16
     CONTINUOUS_TIME = 32
 
-
-MOST_TICKS = 1e15
-"""Of a sampled block in a run: a larger count would be a mistake, and one more could not be told from it."""
 
 MODE_NAMES = (
     *("before initialization mode", "in initialization mode", "after initialization", "after termination"),

@@ -14,6 +14,7 @@ from driveline.harness.recordings.quantities import BY_UNIT, QUANTITIES, aliases
 from driveline.harness.views.markdown import markdown_table
 from driveline.models.controller.causes import FAILURES, FEEDING, Cause
 from driveline.models.damping_controller import BLOCK
+from tests.fmus.native.legal_hosts import HOSTS
 
 CHECKS = Path(__file__).with_name("recording_checks.md").read_text(encoding="utf-8")
 
@@ -50,6 +51,15 @@ def check_rules() -> str:
     ]
     headings = ("rule", "severity", "FMI 2.0", "FMI 3.0", "what an FMU does that keeps it")
     return markdown_table(headings, rows, labels=5)
+
+
+def legal_hosts() -> str:
+    """What hosts do for which a test says that they get the same numbers."""
+    rows = ((row.does, "to the last bit" if "step" not in "".join(row.options) else STEPS_APART) for row in HOSTS)
+    return markdown_table(("a host that", "gets the numbers of a plain one"), rows, labels=2)
+
+
+STEPS_APART = "to the last bit; plants and motor within 1e-5"
 
 
 def file_limits() -> str:
@@ -104,6 +114,14 @@ def _each(value: str) -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     function.__name__: function
-    for function in (causes, check_rules, file_limits, recording_columns, recording_plausibility, recording_checks)
+    for function in (
+        causes,
+        check_rules,
+        file_limits,
+        legal_hosts,
+        recording_columns,
+        recording_plausibility,
+        recording_checks,
+    )
 }
 """By the names that pages call them."""

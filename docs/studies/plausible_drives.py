@@ -5,7 +5,7 @@ docs/results.md). What its sensors record is judged as the recording of a drive 
 by the same plant with the car as it is declared, which nobody knows better.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -17,12 +17,15 @@ from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.road_load import Track
 from driveline.harness.metrics.evaluate import at_samples
+from driveline.harness.recordings.channel_rules import excursions, spikes
 from driveline.harness.recordings.channels import Channel
 from driveline.harness.recordings.drive import Drive
 from driveline.harness.recordings.file_units import FileUnit
 from driveline.harness.recordings.findings import Finding
 from driveline.harness.recordings.force_balance import Balance, balance, forces
+from driveline.harness.recordings.missing_values import coded
 from driveline.harness.recordings.plausibility import not_followed, of_drive
+from driveline.harness.recordings.quantities import QUANTITIES
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.drives.replay import car_of, followed, speed_error
 from driveline.harness.studies.robustness.case_runs import CaseRunner
@@ -35,6 +38,14 @@ STRIDES = (1, 50)
 """Samples of the controller from one of the recording to the next: 2 ms and 0.1 s."""
 
 
+class Spiked(NamedTuple):
+    """A channel: how far its loneliest sample leaves its neighbours, over their range, and what is named."""
+
+    quantity: str
+    lone: float
+    named: int
+
+
 class Judged(NamedTuple):
     """A drive, what was found odd in it before and after it was followed, and what the rules saw."""
 
@@ -42,6 +53,7 @@ class Judged(NamedTuple):
     findings: list[Finding]
     balance: Balance
     speed_error: float
+    channels: list[Spiked]
 
 
 def cases(count: int) -> list[tuple[Case, bool]]:
@@ -70,6 +82,36 @@ def recorded(results: np.ndarray, stride: int) -> Drive:
     return Drive("drive", time, v, elevation, T_mot, {}, channels)
 
 
+SENSORS = {
+    "plant.v": "v",
+    "motor.T_mot_est": "T_mot",
+    "controller.T_ref": "T_ref",
+    "motor.omega_1_meas": "omega_1",
+    "can.omega_2_can": "omega_2",
+    "plant.T_load": "T_load",
+    "plant.T_rim": "T_wheel",
+}
+"""Signals of a run by the quantities that a logger may have of them."""
+
+
+def sensed(results: np.ndarray) -> Iterator[Channel]:
+    """All channels that a logger may have of a run, at three rates."""
+    samples = at_samples(results)
+    for signal, quantity in SENSORS.items():
+        if signal in (samples.dtype.names or ()):
+            unit = QUANTITIES[quantity].also or QUANTITIES[quantity].unit
+            for stride in (1, 5, 50):
+                time, values = samples["time"][::stride], samples[signal][::stride]
+                yield Channel(quantity, quantity, unit, time, values, "sample {}".format, FileUnit(unit))
+
+
+def spiked(channel: Channel) -> Spiked:
+    """What the rules see in a channel."""
+    lone = max((float(ratio.max(initial=0.0)) for _, ratio in excursions(channel)), default=0.0)
+    named = len(list(spikes(channel))) + int(coded(channel.values).any()) + int(coded(channel.values.round(1)).any())
+    return Spiked(channel.quantity, lone, named)
+
+
 def judged(case: Case, damped: bool, settings: Settings, follow: bool = True) -> Judged:
     """What is found odd in a drive.
 
@@ -88,7 +130,8 @@ def judged(case: Case, damped: bool, settings: Settings, follow: bool = True) ->
             signals = followed(track, load, settings)[1]
             findings += not_followed(drive, signals["time"], signals["plant.v"])
             error = max(error, speed_error(signals, track))
-    return Judged(case, findings, balance(forces(drives[0].time, drives[0].v, drives[0].T_mot, load)), error)
+    balanced = balance(forces(drives[0].time, drives[0].v, drives[0].T_mot, load))
+    return Judged(case, findings, balanced, error, [spiked(channel) for channel in sensed(results)])
 
 
 def all_judged(drives: Sequence[tuple[Case, bool]]) -> list[Judged]:
@@ -122,9 +165,21 @@ def findings_table(found: Sequence[Judged]) -> Table:
     return Table("drive", (Column("findings", decimals=0), Column("speed error", "m/s", 3)), rows)
 
 
+def channels_table(found: Sequence[Judged]) -> Table:
+    """A row for each quantity: how many channels, at 2 ms, 10 ms and 0.1 s, what is named in them, and how lonely the
+    loneliest sample is."""
+    every = [each for one in found for each in one.channels]
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for quantity in SENSORS.values():
+        its = [each for each in every if each.quantity == quantity]
+        rows[quantity] = (len(its), sum(each.named for each in its), max((each.lone for each in its), default=0.0))
+    return Table("quantity", (*(Column(name, decimals=0) for name in ("channels", "named")), Column("lone")), rows)
+
+
 def measure() -> Measured:
     found = all_judged(cases(CASES))
-    return Measured({"plants": plants_table(found), "drives": findings_table(found)})
+    tables = {"plants": plants_table(found), "channels": channels_table(found), "drives": findings_table(found)}
+    return Measured(tables)
 
 
 def again() -> dict[str, Table]:

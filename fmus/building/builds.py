@@ -2,7 +2,7 @@
 
 import logging
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from difflib import get_close_matches
 from math import inf
@@ -42,7 +42,7 @@ def build_fmus(
     vehicle: Path | None = None,
     parameters: Path | None = None,
     fmi: int = 2,
-) -> Iterator[Path]:
+) -> Generator[Path, None, None]:
     """Builds FMUs, as many at a time as there are cores; yields the path of each file in their order.
 
     An FMU of the project that is there as it would be built is left as it is, unless CC names a compiler.

@@ -17,8 +17,8 @@ from ..protocol import (
     DAMAGED_STATE,
     FOREIGN_STATE,
     FROM_START_ON,
-    MOST_TICKS,
-    NEAR_ITS_TIME,
+    THE_START_TIME,
+    WITHIN_A_SAMPLE,
     Mode,
 )
 from .refusal import Refused
@@ -59,19 +59,21 @@ def _checked(block: Block, content: Content) -> Content:
     running = mode in (Mode.STEPPING, Mode.TERMINATED)
     if mode not in tuple(Mode) or running != (content.memory is not None):
         raise Refused(DAMAGED_STATE)
-    _check_times(content)
+    _check_times(content, running)
     values = {**u._asdict(), **p._asdict()}
     for variable in interface(block):
         if variable.causality != "output":
             _check_value(block, variable, values[variable.name])
-    memory = _checked_memory(block, u, p, content) if running else None
+    memory = _checked_memory(block, u, p, content.memory) if running else None
     return content._replace(mode=mode, u=u, p=p, memory=memory)
 
 
-def _check_times(content: Content) -> None:
+def _check_times(content: Content, running: bool) -> None:
     for name in ("start_time", "time"):
         if not math.isfinite(value := getattr(content, name)):
             raise Refused(BAD_STATE, name=name, value=value, allowed=ANY_NUMBER)
+    if not running and content.time != content.start_time:
+        raise Refused(BAD_STATE, name="time", value=content.time, allowed=THE_START_TIME)
     if not content.stop_time >= content.start_time:
         raise Refused(BAD_STATE, name="stop_time", value=content.stop_time, allowed=FROM_START_ON)
 
@@ -86,20 +88,16 @@ def _check_value(block: Block, variable: Variable, value: Any) -> None:
         raise Refused(BAD_STATE, name=variable.name, value=value, allowed=variable.allowed())
 
 
-def _checked_memory(block: Block, u: Any, p: Any, content: Content) -> tuple[Any, ...]:
-    """Elapsed time and state, of a sampled block also the coming state and the number of ticks."""
-    template = runner(block, u, p).memory
-    memory = shaped(content.memory, template)
-    elapsed = content.time - content.start_time
-    for record, value in zip(("x", "coming"), memory[1:3], strict=False):
+def _checked_memory(block: Block, u: Any, p: Any, read: Any) -> tuple[Any, ...]:
+    """The state, of a sampled block also the coming state and the sample times to the next tick."""
+    memory = shaped(read, runner(block, u, p).memory)
+    for record, value in zip(("x", "coming"), memory, strict=False):
         for name, number in numbers(record, value):
             if not math.isfinite(number):
                 raise Refused(BAD_STATE, name=name, value=number, allowed=ANY_NUMBER)
-    if isinstance(block, SampledBlock):
-        ticks = memory[3]
-        if not (0 <= ticks <= MOST_TICKS and abs(ticks - elapsed / block.sample_time) < 1.5):
-            raise Refused(BAD_STATE, name="ticks", value=float(ticks), allowed=NEAR_ITS_TIME)
-    return (elapsed, *memory[1:])
+    if isinstance(block, SampledBlock) and not abs(memory[2]) <= 1.0:
+        raise Refused(BAD_STATE, name="to_tick", value=memory[2], allowed=WITHIN_A_SAMPLE)
+    return memory
 
 
 def shaped(read: Any, template: Any) -> Any:

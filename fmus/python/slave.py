@@ -134,17 +134,17 @@ class BlockSlave:
             return self._discard(protocol.BAD_STEP_SIZE, size=step_size, longest=longest)
         self._check_step(current_time, step_size)
         try:
-            self._advance(current_time - self.start_time, step_size)
+            self._advance(step_size)
         except TooMuchWork as failure:
             return self._discard(protocol.TOO_MUCH_WORK, size=step_size, state=failure.args[0])
         self.time = current_time + step_size
         return True
 
-    def _advance(self, elapsed: float, step_size: float) -> None:
-        """Advances the block from `elapsed` s after the start on, to finite outputs or not at all."""
+    def _advance(self, step_size: float) -> None:
+        """Advances the block, to finite outputs or not at all."""
         assert self.runner
         before, memory = self.runner.x, self.runner.memory
-        self.runner.elapsed, self.runner.p = elapsed, self.values.p
+        self.runner.p = self.values.p
         try:
             self.runner.advance(self.values.u, step_size)
             if self.runner.x is not before:

@@ -3,7 +3,7 @@
 import logging
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from errno import ELOOP, ENOLCK, ENOSPC, ENOTSUP
 from pathlib import Path
@@ -71,6 +71,31 @@ def as_before_if_stopped() -> Iterator[None]:
             if old is not None:
                 old.unlink(missing_ok=True)
         _before.reset(outer)
+
+
+@contextmanager
+def unchanged_if_stopped(pattern: str, *folders: Path) -> Iterator[None]:
+    """Small files of that pattern in folders, and the folders, are as they were before when it is stopped; for what
+    other threads write, which end after it was stopped."""
+
+    def found() -> set[Path]:
+        return {path for folder in folders for path in folder.glob(pattern)}
+
+    there = {path: path.read_bytes() for path in found()}
+    absent = {each for folder in folders for each in (folder, *folder.parents) if not each.exists()}
+    try:
+        yield
+    except KeyboardInterrupt:
+        for path in found() - there.keys():
+            path.unlink()
+        for path, content in there.items():
+            if path.read_bytes() != content:
+                with complete(path) as unfinished:
+                    unfinished.write_bytes(content)
+        for folder in sorted(absent, reverse=True):
+            with suppress(OSError):  # it was never made, or there is something in it
+                folder.rmdir()
+        raise
 
 
 def _set_aside(path: Path) -> None:

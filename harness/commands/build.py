@@ -14,11 +14,13 @@ examples:
   driveline build --platform all --fmi 3     for FMI 3.0, on Linux, Windows and macOS (extra `cross`)
 """
 
+from contextlib import closing
 from pathlib import Path
 
-from ...fmus.building.builds import BUILDS, FMIS, PLATFORMS, build_fmus
+from ...fmus.building.builds import BUILDS, FMI3_FOLDER, FMIS, NATIVE_FOLDER, PLATFORMS, build_fmus
 from ...fmus.catalogue import FMUS
 from ...fmus.names import COMPARATORS
+from ..base.atomic_files import unchanged_if_stopped
 from ..loop.places import BUILD
 from .arguments import option, positional
 from .options import ParameterFiles, output_folder, record
@@ -38,7 +40,10 @@ class Arguments(ParameterFiles, Printing):
 
 def run(args: Arguments) -> int:
     files = args.vehicle, args.parameters
-    for path in build_fmus(args.names, args.output, args.build, args.platform, *files, int(args.fmi)):
-        if not args.quiet:
-            print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
+    built = build_fmus(args.names, args.output, args.build, args.platform, *files, int(args.fmi))
+    folders = (args.output / folder for folder in ("", NATIVE_FOLDER, FMI3_FOLDER))
+    with unchanged_if_stopped("*.fmu", *folders), closing(built):
+        for path in built:
+            if not args.quiet:
+                print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
     return 0

@@ -18,6 +18,7 @@ from io import TextIOWrapper
 from typing import Any, NamedTuple, NoReturn
 from unicodedata import category
 
+from ..base import command_line
 from ..base.errors import DrivelineError
 from ..base.interruption import STDOUT, forget_stdout, named_stdout, reopen_closed_streams, stoppable
 from ..base.known_names import nearest
@@ -49,6 +50,7 @@ PURPOSES = {
         "bus": "write the database of the bus (DBC)",
     },
     "studies": {
+        "again": "make a result again from its record, and compare every number",
         "faults": "put faults on the controller's signals and judge what it makes of them",
         "robustness": "drive cars and sensors that are drawn at random with every controller",
     },
@@ -299,6 +301,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     name, words = "driveline", list(sys.argv[1:] if arguments is None else arguments)
     if words[:1] == ["help"]:
         words = [*words[1:], "--help"]
+    command_line.words.set(words)
     reopen_closed_streams()
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)  # who reads a pipe need not wait for the end either

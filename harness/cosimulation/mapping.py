@@ -1,8 +1,9 @@
 """What the loop calls a variable, and what the FMU that somebody else wrote calls it.
 
-`plant.T_gear=Shaft.tau` says that plant.T_gear is Shaft.tau of the FMU in the place of the plant. Its values
-are converted into the unit that the loop declares for that name, or into that of the SI where it declares
-none; a variable without a unit is taken to be in it already. Whatever else the FMU calls T_gear is hidden.
+`plant.T_gear=Shaft.tau` says that plant.T_gear is Shaft.tau of the FMU in the place of the plant. Whatever else the
+FMU calls T_gear is hidden. Values of what the loop connects, and of what is mapped, are converted into the unit that
+the loop declares for the name, or into that of the SI where it declares none; a variable without a unit is taken to be
+in it already.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -45,14 +46,24 @@ def apply(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:
             yield f"{name}={theirs}: there is no instance {instance}; {nearest(instance, interfaces)}"
     units = {port.name: port.unit for ports in system.ports.values() for port in ports}
     for instance, interface in interfaces.items():
-        own = interface.variables
-        interface.variables = dict(_renamed(own, names[instance]))
-        for ours, theirs in names[instance].items():
-            problem = _missing_or_taken(theirs, ours, own, names[instance])
-            problem = problem or _convert(interface, ours, units.get(f"{instance}.{ours}", SI))
+        own, mapped = interface.variables, names[instance]
+        interface.variables = dict(_renamed(own, mapped))
+        taken: dict[str, str] = {}
+        for ours, theirs in mapped.items():
+            problem = _missing_or_taken(theirs, ours, own, mapped)
+            problem = problem or _convert(interface, ours, units.get(f"{instance}.{ours}", SI), taken)
             if problem:
                 interface.refused.add(ours)
                 yield f"{instance}.{ours}={theirs}: in {interface.path.name} {theirs} {problem}"
+        for name, unit in units.items():
+            of, _, ours = name.partition(".")
+            connected = of == instance and ours in interface.variables and ours not in mapped
+            if connected and (problem := _convert(interface, ours, unit, taken)):
+                interface.refused.add(ours)
+                yield f"{name} {problem} ({interface.path.name})"
+        if taken:
+            each = ", ".join(f"{ours} in {'that of the SI' if unit == SI else unit}" for ours, unit in taken.items())
+            warn_once(f"{interface.path.name}: variables without a unit are taken to be in that of the loop: {each}")
 
 
 def _renamed(own: Mapping[str, ModelVariable], names: Mapping[str, str]) -> Iterator[tuple[str, ModelVariable]]:
@@ -75,19 +86,23 @@ def _missing_or_taken(theirs: str, ours: str, own: Mapping[str, ModelVariable], 
     return None
 
 
-def _convert(interface: Interface, name: str, target_unit: str | None) -> str | None:
-    """Lets the values of a variable be converted into the wanted unit, if there is one; says what hinders it."""
+def _convert(interface: Interface, name: str, target_unit: str | None, taken: dict[str, str]) -> str | None:
+    """Lets the values of a variable be converted into the wanted unit, if there is one; says what hinders it.
+
+    Args:
+        taken: gets the unit of a variable that has none.
+    """
     variable = interface.variables[name]
     unit = unit_of(variable)
-    if variable.type != "Real" or target_unit is None:
+    if variable.type != "Real" or target_unit is None or unit == target_unit:
         return None
     try:
         if unit:
             interface.factors[name] = factor(unit, target_unit)
         else:
-            taken = "that of the SI" if target_unit == SI else target_unit
-            warn_once(f"{interface.path.name}: what is mapped to {name} has no unit; it is taken to be in {taken}")
+            taken[name] = target_unit
     except ValueError as reason:
         return str(reason)
+    variable = interface.variables[name] = copy(variable)
     variable.unit = target_unit
     return None

@@ -65,7 +65,7 @@ class System:
         own: instances whose FMUs are the project's; those of the others run in a process of their own.
         limits: of the others.
         any_value: instances that put out NaN on purpose; with all others it ends the run.
-        optional: inputs and parameters that an FMU may lack, and the value that it then stands for (None: any).
+        optional: variables that an FMU may lack, and the value that an input or parameter then stands for (None: any).
     """
 
     instances: Mapping[str, Path]
@@ -94,10 +94,11 @@ class System:
         }
 
     def without(self, names: Collection[str]) -> "System":
-        """The system without the inputs and parameters of these names, and what feeds them."""
+        """The system without the variables of these names, and what feeds them."""
         return replace(
             self,
             connections=tuple(connection for connection in self.connections if connection.target not in names),
             inputs=tuple(port for port in self.inputs if port.name not in names),
             parameters=tuple(port for port in self.parameters if port.name not in names),
+            outputs=tuple(port for port in self.outputs if port.name not in names),
         )

@@ -16,16 +16,46 @@ PRODUCT = rf"{SYMBOL}(?:[.*]{SYMBOL})*"
 UNIT = re.compile(rf"{PRODUCT}(?:/(?:{SYMBOL}|\({PRODUCT}\)))?")
 """A product, over one symbol or a product in brackets: N.m, kg.m2, s-1, N.m/rad, J/(kg.K), 1."""
 
-ALIASES = {
+SIGNS = str.maketrans(
+    {"·": ".", "⋅": ".", "∙": ".", "*": ".", "²": "2", "³": "3", "\u03bc": "µ", "−": "-", "\N{NO-BREAK SPACE}": " "}
+)
+
+SPELLED = {
+    **dict.fromkeys(("kmh", "kph", "kmph", "km/hr"), "km/h"),
     # speeds in revolutions; as plain frequencies they would be off by 2 pi
-    **dict.fromkeys(("rpm", "rev/min", "r/min", "1/min", "min-1"), "turn/min"),
+    **dict.fromkeys(
+        ("rpm", "RPM", "U/min", "1/min", "/min", "min-1", "min^-1", "rev/min", "revs/min", "r/min"), "turn/min"
+    ),
     "rev": "turn",
-    "Nm": "N.m",
+    **dict.fromkeys(("sec", "secs", "seconds", "Sec"), "s"),
+    **dict.fromkeys(("-", "--", "bool", "Boolean"), "1"),
+    "mps": "m/s",
+    "grad": "deg",  # the German word, which pint takes for 1/400 of a turn
+    "Grad": "deg",
 }
-"""Units as some tools write them, which pint takes for something else or not at all."""
+"""Units as tools and loggers write them, which pint takes for something else or not at all."""
+
+POUNDS = re.compile(r"(?P<force>lbs?f?)[ .-]?(?P<arm>ft|in)|(?P<first>ft|in)[ .-]?lbs?f?", re.IGNORECASE)
+"""Torque in pounds: lb-ft, ft-lb, lbf.in."""
+
+TORQUE = re.compile(r"(?P<prefix>[mkM]?)N[ .-]?m(?P<damping>[ .]?s)?(?P<per>/.+)?")
+"""N.m, N.m/rad, and N.m.s/rad, with or without dots."""
 
 SI = "SI"
 """Stands for the unit of the SI, whatever the dimension."""
+
+
+def spelled(unit: str) -> str:
+    """The unit as in Modelica."""
+    text = unit.replace("**", "^").translate(SIGNS).strip()
+    text = SPELLED.get(text, text)
+    torque = TORQUE.fullmatch(text)
+    if torque:
+        return f"{torque['prefix']}N.m{'.s' if torque['damping'] else ''}{torque['per'] or ''}"
+    pounds = POUNDS.fullmatch(text)
+    if pounds:
+        return f"lbf.{(pounds['arm'] or pounds['first']).lower()}"
+    return text.replace("°", "deg").replace(" ", ".")
 
 
 def factor(unit: str, target_unit: str) -> float:
@@ -81,7 +111,7 @@ def _registry() -> Any:
 def _parsed(unit: str, registry: Any) -> Any:
     import pint
 
-    text = ALIASES.get(unit, unit)
+    text = spelled(unit)
     try:
         if len(text) > LONGEST or not UNIT.fullmatch(text):
             raise ValueError(unit)

@@ -152,11 +152,6 @@ def _check_port(port: Port, causality: str, interfaces: Mapping[str, Interface])
         return
     if variable.type != "Real":
         yield f"{port.name} is {type_of(variable)}; it must be Real, in {port.unit}"
-    elif unit_of(variable) != port.unit:
-        yield (
-            f"{port.name} is in {_unit(variable)}; it must be in {port.unit} "
-            f"(--map {port.name}={variable.name} converts it)"
-        )
 
 
 def _check_ends(connection: Connection, interfaces: Mapping[str, Interface]) -> Iterator[str]:

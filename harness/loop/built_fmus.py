@@ -109,9 +109,10 @@ def _needed(loops: Iterable[Settings]) -> Needed:
     needed: dict[str, dict[str, None]] = {}
     for made in loops:
         build = made.build or NATIVE
-        system = loop(made, build=build)
-        own = (path.stem for name, path in system.instances.items() if name in system.own)
-        needed.setdefault(build, {}).update(dict.fromkeys(own))
+        for control in (made.control, False):
+            system = loop(made, build=build, control=control)
+            own = (path.stem for name, path in system.instances.items() if name in system.own)
+            needed.setdefault(build, {}).update(dict.fromkeys(own))
     return needed
 
 

@@ -23,6 +23,9 @@ BUILD_HELP = "native FMUs or those that run Python (default: native where all FM
 
 PLANTS = PLACES["plant"]
 
+NO_DAMPING = "NoDamping"
+"""The controller that passes the demand through."""
+
 STEP_SIZE = 1e-3
 """Communication step of the loop in s, unless another is asked for."""
 

@@ -18,6 +18,7 @@ from .places import (
     CONNECTIONS,
     INPUTS,
     NATIVE,
+    NO_DAMPING,
     OPTIONAL,
     OUTPUTS,
     PARAMETERS,
@@ -137,6 +138,22 @@ def settings(given: Settings | NameOrFile | None = None, **changes: Unpack[Chang
     return Settings().replace(**changes)
 
 
+def running(made: Settings) -> Settings:
+    """The settings as they run: without damping, NoDamping stands in the place of a controller that has no `enable`."""
+    if made.control or str(made.controller) in PLACES["controller"]:
+        return made
+    from ..cosimulation.interface import Interface  # who asks for help alone needs no fmpy
+
+    enable = made.mapping.get("controller.enable", "enable")
+    if enable in Interface(_file("controller", made.controller, made.folder), made.limits).variables:
+        return made
+    others = {
+        name: {key: value for key, value in getattr(made, name).items() if not key.startswith("controller.")}
+        for name in ("parameters", "mapping")
+    }
+    return dataclasses.replace(made, controller=NO_DAMPING, **others)
+
+
 def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> System:
     """The closed loop of controller, motor, plant and the wheel speeds over CAN, as settings say; arguments as of
     `settings`.
@@ -144,7 +161,7 @@ def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes])
     Raises:
         WiringError: there is no such block or build.
     """
-    made = settings(given, **changes)
+    made = running(settings(given, **changes))
     files = _files(made, made.build or chosen_build(made))
     return System(
         instances=files,

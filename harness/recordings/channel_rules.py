@@ -121,20 +121,12 @@ def cut_off(channel: Channel) -> Iterator[Finding]:
 def spikes(channel: Channel) -> Iterator[Finding]:
     """Samples that leave their neighbours and come back as nothing does that a car or its motor makes."""
     x = channel.values
-    if len(x) < LEAST or channel.unit == "1":
-        return
-    from scipy.ndimage import median_filter
-
-    interval = float(np.median(np.diff(channel.time)))
-    smallest = max(LARGE * float(np.ptp(median_filter(x, 2 * WIDEST + 1, mode="nearest"))), _smallest(channel))
     odd = np.zeros(len(x), dtype=bool)
-    for width in range(1, WIDEST + 1):
-        off = np.abs(x - median_filter(x, 2 * width + 1, mode="nearest"))
-        if len(x) > 2 * (AROUND + width) and (width == 1 or width * interval <= BRIEF * (1.0 + 1e-6)):
-            at = np.flatnonzero(off > smallest)
-            odd[at[off[at] > LONE * _range_around(x, at, width)]] = True
-        if channel.unit == "m/s":
-            odd |= off > max(SPIKE, ACCELERATION * interval * width)
+    for at, ratio in excursions(channel):
+        odd[at[ratio > LONE]] = True
+    if channel.unit == "m/s" and len(x) >= LEAST:
+        for width in range(1, WIDEST + 1):
+            odd |= _off(x, width) > max(SPIKE, ACCELERATION * _interval(channel) * width)
     at = np.flatnonzero(odd)
     if len(at):
         k, unit = int(at[0]), channel.file_unit
@@ -142,6 +134,35 @@ def spikes(channel: Channel) -> Iterator[Finding]:
         yield at_samples(
             channel, SPIKED, at, f"is {off:+.3g} {unit.printed} off its neighbours, a spike{more(len(at))}"
         )
+
+
+def excursions(channel: Channel) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """By their width, indices of the samples that leave their neighbours far enough to be spikes, and how far, over the
+    range of these."""
+    x = channel.values
+    if len(x) <= 2 * (AROUND + WIDEST) or channel.unit == "1":
+        return
+    smallest = max(LARGE * float(np.ptp(_smooth(x, WIDEST))), _smallest(channel))
+    for width in range(1, WIDEST + 1):
+        if width == 1 or width * _interval(channel) <= BRIEF * (1.0 + 1e-6):
+            off = _off(x, width)
+            at = np.flatnonzero(off > smallest)
+            yield at, off[at] / np.maximum(_range_around(x, at, width), np.finfo(float).tiny)
+
+
+def _interval(channel: Channel) -> float:
+    return float(np.median(np.diff(channel.time)))
+
+
+def _off(x: np.ndarray, width: int) -> np.ndarray:
+    """How far samples are off what they would be without spikes of a width."""
+    return np.abs(x - _smooth(x, width))
+
+
+def _smooth(x: np.ndarray, width: int) -> np.ndarray:
+    from scipy.ndimage import median_filter
+
+    return median_filter(x, 2 * width + 1, mode="nearest")
 
 
 def _smallest(channel: Channel) -> float:

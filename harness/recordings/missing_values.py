@@ -23,10 +23,13 @@ RESERVED = ENDS | {
 RESOLUTIONS = tuple(digit * 10.0**-k for k in range(5) for digit in (1.0, 5.0, 2.0, 2.5, 1.25))
 """Of signals, in the units of their files."""
 
-ALONE = Threshold(
-    0.5, "1", "distance of a code from all other values, over their range", "0.18 at most in healthy drives"
+ALONE, SCALED = (
+    Threshold(value, "1", f"distance of a code from all other values, over their range{which}", source)
+    for value, which, source in (
+        (0.5, "", "a signal comes to its largest value by way of others"),
+        (2.0, ", of one that is a multiple of a resolution", "1.1 in 200 simulated drives, of 12.6 and 12.7 N.m"),
+    )
 )
-SCALED = Threshold(1.0, "1", "the same of a code that is a multiple of a resolution", "0.18 at most in healthy drives")
 MEASURED = 10
 """Different values that a channel has at least that was measured; others are switched."""
 

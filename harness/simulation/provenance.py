@@ -1,9 +1,8 @@
 """What made a result: a JSON file beside it, and by it two runs that are not the same are told apart."""
 
 import json
-import shlex
+import platform
 import subprocess
-import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cached_property
@@ -13,6 +12,7 @@ from typing import Any
 
 from ...fmus.child_process import output_of
 from ..base.atomic_files import alone, as_before_if_stopped, remove, replaceable, write_text
+from ..base.command_line import command_line
 from ..base.digest import digest
 from ..base.errors import DrivelineError
 from ..cosimulation import row_layout
@@ -152,7 +152,7 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         reason = f"is there, and {record} does not tell of which run it is"
     else:
-        changed = next(_differences(before, json.loads(_text(run))), None)
+        changed = next(differences(before, json.loads(_text(run))), None)
         if changed is None:
             return
         reason = f"is of another run ({changed})"
@@ -171,11 +171,11 @@ def require_same_text(text: str, path: Path) -> None:
         )
 
 
-def _differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
+def differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
     """In what two runs differ, in words."""
     if isinstance(before, dict) and isinstance(now, dict):
         for key in sorted(before.keys() | now.keys()):
-            yield from _differences(before.get(key), now.get(key), f"{name} {key}".strip())
+            yield from differences(before.get(key), now.get(key), f"{name} {key}".strip())
     elif before in ({}, None) and now in ({}, None):
         return  # nothing is set in either
     elif isinstance(before, dict) and now is None:
@@ -207,20 +207,28 @@ def content(
     return {
         "program": f"driveline-damping {version('driveline-damping')}",
         "commit": commit(),
-        "command_line": shlex.join(sys.argv),
+        "command_line": command_line(),
+        "folder": str(Path.cwd()),
+        "versions": versions(),
         "run": run,
         "fmus": {
             system: {name: {"file": path, "digest": digest(path)} for name, path in fit.system.instances.items()}
             for system, fit in fits.items()
         },
         "inputs": {str(path): digest(path) for path in inputs if path is not None},
-        "files": [path.name for path in files],
+        "files": {path.name: digest(path) if path.is_file() else None for path in files},
         "units": {name: unit for fit in fits.values() for name, unit in _units(fit).items()},
     }
 
 
 def _units(fit: Fit) -> dict[str, str]:
     return row_layout.units(fit.interfaces, [port.name for port in fit.system.inputs])
+
+
+def versions() -> dict[str, str]:
+    """Of what the last digits of a number may depend on."""
+    packages = {name: version(name) for name in ("numpy", "scipy", "fmpy")}
+    return {"python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}", **packages}
 
 
 def commit() -> str | None:

@@ -17,7 +17,7 @@ from ..cosimulation.runs import run
 from ..cosimulation.system import Port
 from ..loop.built_fmus import require_there
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
-from ..loop.settings import Changes, Settings, loop
+from ..loop.settings import Changes, Settings, loop, running
 from ..loop.settings import settings as settings_of
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -52,7 +52,7 @@ def simulate(
         SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
     """
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
-    made = settings_of(settings, **changes)
+    made = running(settings_of(settings, **changes))
     given = _checked(start(manoeuvre, made.seed) | dict(made.parameters))
     require_steps(manoeuvre.duration, made.step_size)
     _warn(manoeuvre, given, made.step_size)

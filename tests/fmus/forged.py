@@ -7,10 +7,10 @@ import zlib
 HEAD = 48
 """Of a state of a native build, in bytes: checksum and GUID; all that follows are numbers of 8 bytes."""
 
-FROM_THE_END = {"start_time": 7, "stop_time": 6, "time": 5, "ticks": 4, "mode": 3}
+FROM_THE_END = {"start_time": 7, "stop_time": 6, "time": 5, "to_tick": 4, "mode": 3}
 """Places in a native state, in numbers; before them lie the two states of a block."""
 
-IN_JSON = {"mode": (0,), "start_time": (1,), "stop_time": (2,), "time": (3,), "ticks": (6, 3)}
+IN_JSON = {"mode": (0,), "start_time": (1,), "stop_time": (2,), "time": (3,), "to_tick": (6, 2)}
 
 
 def forged(saved: bytes, place: str, value: float, states: int = 0, coming: bool = False) -> bytes:
@@ -49,7 +49,7 @@ def sealed(body: bytes) -> bytes:
 
 def _forged_in_python(saved: bytes, place: str, value: float, coming: bool) -> bytes:
     build, content = json.loads(saved[8:])
-    path = {"input": (4, 0), "state": (6, 1 + coming)}.get(place) or IN_JSON[place]
+    path = {"input": (4, 0), "state": (6, int(coming))}.get(place) or IN_JSON[place]
     *way, last = path
     where = content
     for step in way:

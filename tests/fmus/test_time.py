@@ -104,6 +104,17 @@ def test_a_host_that_adds_up_its_time_gets_every_tick_once(counter, step_size):
         assert counter.get_real([1]) == [math.floor(k * step_size / T_S + 1e-3)]
 
 
+@pytest.mark.parametrize("off", [0.9e-6, -0.9e-6])
+def test_the_clock_of_a_host_may_go_wrong_and_no_tick_moves(counter, off):
+    """A sum of 1e7 steps of 1 ms is 2 us off; here it is so after three steps, and 0.2 ms after 200."""
+    time = 0.0
+    for k in range(200):
+        counter.set_real([0], [float(k)])
+        counter.do_step(time, 0.001)
+        time = counter.time + off
+        assert counter.get_real([1]) == [sum(range(0, k, 2))]
+
+
 @together("name", SAMPLED)
 @together("sizes", COMMUNICATION_STEPS.values())
 def test_a_sampled_block_does_not_depend_on_the_communication_step(built, tmp_path, name, sizes):

@@ -20,6 +20,8 @@ static Status check_times(const Instance *instance, const Memory *memory)
         return refuse_number(instance, "start_time", memory->start_time, ANY_NUMBER);
     if (!(fabs(memory->time) <= DBL_MAX))
         return refuse_number(instance, "time", memory->time, ANY_NUMBER);
+    if ((memory->mode & (INSTANTIATED | INITIALIZATION)) && memory->time != memory->start_time)
+        return refuse_number(instance, "time", memory->time, THE_START_TIME);
     if (!(memory->stop_time >= memory->start_time))
         return refuse_number(instance, "stop_time", memory->stop_time, FROM_START_ON);
     return OK;
@@ -75,7 +77,7 @@ static Status check_states(const Instance *instance, const Memory *memory)
     Status status = check_numbers(instance, "x", state_names, x, states);
     if (status == OK)
         status = check_numbers(instance, "coming", state_names, coming, states);
-    return status == OK ? check_ticks(instance, memory) : status;
+    return status;
 }
 
 const char *kind_name(Kind kind)
@@ -112,7 +114,9 @@ Status check_content(const Instance *instance, Memory *memory)
     if (status == OK)
         status = check_numbers(
             instance, "du", input_names, (const double *)(const void *)&memory->du, sizeof(Input) / sizeof(double));
-    if (status == OK && mode != INSTANTIATED && mode != INITIALIZATION)
+    if (status == OK)
+        status = check_to_tick(instance, memory);
+    if (status == OK && !(mode & (INSTANTIATED | INITIALIZATION)))
         status = check_states(instance, memory);
 #ifdef TERMINAL
     if (status == OK)

@@ -16,11 +16,10 @@ const Input *moving(const Memory *memory)
     return any ? &memory->du : NULL;
 }
 
-Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next)
+Obstacle advance(const Memory *memory, double duration, Next *next)
 {
     const Values *values = &memory->values;
     const Problem problem = {&values->u, moving(memory), &values->p, NULL, NULL};
-    (void)elapsed;
     const int failed = integrate(&problem, duration, &memory->x, &next->states[0]);
     if (failed)
         return (Obstacle){state_names[abs(failed) - 1] + 1, failed < 0}; /* without the dot of the name */
@@ -30,7 +29,7 @@ Obstacle advance(const Memory *memory, double elapsed, double duration, Next *ne
     return (Obstacle){.state = NULL};
 }
 
-Status check_ticks(const Instance *instance, const Memory *memory)
+Status check_to_tick(const Instance *instance, const Memory *memory)
 {
     (void)instance;
     (void)memory;

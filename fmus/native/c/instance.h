@@ -49,7 +49,7 @@ typedef struct {
     double start_time; /* s */
     double stop_time;  /* s; infinite if there is none */
     double time;       /* s */
-    double ticks;      /* of a sampled block: ticks made */
+    double to_tick;    /* of a sampled block: sample times to the next tick */
     int64_t mode;
     int64_t outputs_known;
     int64_t last_step;     /* status of the last step */
@@ -70,7 +70,7 @@ typedef struct {
     const State *x;
     const State *coming;
     const Input *u;
-    double ticks;
+    double to_tick;
     State states[2];
     Input inputs;
 } Next;
@@ -172,8 +172,8 @@ static Status check_kind(const Instance *instance, const Memory *memory); /* who
 static Status check_content(const Instance *instance, Memory *memory); /* of a saved state */
 
 /* continuous.c or sampled.c */
-static Status check_ticks(const Instance *instance, const Memory *memory); /* of a saved state */
-static Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next); /* `elapsed` since start */
+static Status check_to_tick(const Instance *instance, const Memory *memory); /* of a saved state */
+static Obstacle advance(const Memory *memory, double duration, Next *next);
 static const Input *moving(const Memory *memory); /* the rates of change of the inputs; NULL if they are held */
 static Status check_moving_inputs(Instance *instance, double duration); /* refused if one leaves its range */
 static Status set_input_rates(Instance *instance, const Reference references[], size_t count, const double rates[]);

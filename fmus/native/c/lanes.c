@@ -28,8 +28,7 @@ typedef struct {
     LanesState coming;
     mask lost;
     Memory cars[WIDTH]; /* as they were loaded; room for what a car does alone */
-    double elapsed;     /* s, since the start */
-    double ticks;
+    double to_tick;
     int outputs_known;
     long alone; /* steps that cars made alone */
 } Lanes;
@@ -76,8 +75,7 @@ EXPORT void lanes_load(Lanes *all, int lane, const Memory *memory, int counts)
     PUT_IN(all->du, lane, memory->du);
     PUT_IN(all->x, lane, memory->x);
     PUT_IN(all->coming, lane, memory->coming);
-    all->elapsed = memory->time - memory->start_time;
-    all->ticks = memory->ticks;
+    all->to_tick = memory->to_tick;
     all->outputs_known = 0;
     all->lost[lane] = counts ? 0 : -1;
 }
@@ -143,15 +141,15 @@ EXPORT void lanes_outputs(Lanes *all, double duration)
 /* The same as `advance` of sampled.c. */
 EXPORT void lanes_step(Lanes *all, double duration)
 {
-    const double samples = (all->elapsed + duration) / SAMPLE_TIME;
-    const double due = ceil(samples - TICK_TOLERANCE);
-    for (; all->ticks < due; all->ticks += 1.0) {
+    all->to_tick -= duration / SAMPLE_TIME;
+    const double due = fmax(ceil(-all->to_tick - TICK_TOLERANCE), 0.0);
+    for (double k = 0.0; k < due; k += 1.0) {
         all->x = all->coming;
         lanes_update(&all->x, &all->values.u, &all->values.p, &all->coming);
     }
-    if (all->ticks - samples <= TICK_TOLERANCE)
+    all->to_tick += due;
+    if (all->to_tick <= TICK_TOLERANCE)
         all->x = all->coming;
-    all->elapsed += duration;
     all->outputs_known = 0;
 }
 
@@ -300,7 +298,6 @@ EXPORT void lanes_step(Lanes *all, double duration)
     inputs_in_lanes(all, duration, &all->values.u);
     check_inputs(all);
     memcpy(&all->x, ends, sizeof ends);
-    all->elapsed += duration;
     all->outputs_known = 0;
 }
 

@@ -52,6 +52,7 @@ void leave_initialization(Instance *instance)
     take_over_written(instance);
     start(&memory->values.u, &memory->values.p, &memory->x);
     memory->coming = memory->x;
+    memory->to_tick = 0.0;
     memory->mode = instance->kind == MODEL_EXCHANGE || instance->has_events ? EVENT : STEPPING;
 #ifdef TERMINAL
     open_terminal(memory);
@@ -81,7 +82,7 @@ static void stay(const Memory *memory, Next *next)
     next->x = &memory->x;
     next->coming = &memory->coming;
     next->u = &memory->values.u;
-    next->ticks = memory->ticks;
+    next->to_tick = memory->to_tick;
 }
 
 /* The memory takes over what a step has changed. `x` first: it may be what was coming. */
@@ -93,7 +94,7 @@ static void arrive(Memory *memory, const Next *next, double time)
         memory->coming = *next->coming;
     if (next->u != &memory->values.u)
         memory->values.u = *next->u;
-    memory->ticks = next->ticks;
+    memory->to_tick = next->to_tick;
     memory->time = time;
 }
 
@@ -106,7 +107,7 @@ Status make_step(Instance *instance, double time, double step_size)
     if (status == OK) {
         Next next;
         stay(memory, &next);
-        const Obstacle obstacle = advance(memory, time - memory->start_time, step_size, &next);
+        const Obstacle obstacle = advance(memory, step_size, &next);
         char text[NUMBER_LENGTH];
         if (obstacle.state && obstacle.shorter_steps_do)
             status = discard(instance, TOO_MUCH_WORK(write_number(text, step_size), obstacle.state));

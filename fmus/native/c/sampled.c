@@ -3,31 +3,30 @@
 
 #include <math.h>
 
-/* The ticks up to the end of the step that have not been made; tick k is due k SAMPLE_TIME after the start. The same
-as runner.py, operation by operation. */
-Obstacle advance(const Memory *memory, double elapsed, double duration, Next *next)
+/* The ticks of the step. The same as runner.py, operation by operation. */
+Obstacle advance(const Memory *memory, double duration, Next *next)
 {
-    const double samples = (elapsed + duration) / SAMPLE_TIME;
-    const double due = ceil(samples - TICK_TOLERANCE);
     const Values *values = &memory->values;
-    for (; next->ticks < due; next->ticks += 1.0) {
+    next->to_tick -= duration / SAMPLE_TIME;
+    const double due = fmax(ceil(-next->to_tick - TICK_TOLERANCE), 0.0);
+    for (double k = 0.0; k < due; k += 1.0) {
         State *made = &next->states[next->coming == &next->states[0]];
         next->x = next->coming;
         update(next->x, &values->u, &values->p, made);
         next->coming = made;
     }
-    if (next->ticks - samples <= TICK_TOLERANCE)
+    next->to_tick += due;
+    if (next->to_tick <= TICK_TOLERANCE)
         next->x = next->coming;
     return (Obstacle){NULL, 0};
 }
 
-Status check_ticks(const Instance *instance, const Memory *memory)
+Status check_to_tick(const Instance *instance, const Memory *memory)
 {
-    const double ticks = memory->ticks, samples = (memory->time - memory->start_time) / SAMPLE_TIME;
     char text[NUMBER_LENGTH];
-    if (ticks >= 0.0 && ticks <= MOST_TICKS && ticks == floor(ticks) && fabs(ticks - samples) < 1.5)
+    if (fabs(memory->to_tick) <= 1.0)
         return OK;
-    return refuse(instance, BAD_STATE("ticks", write_number(text, ticks), NEAR_ITS_TIME));
+    return refuse(instance, BAD_STATE("to_tick", write_number(text, memory->to_tick), WITHIN_A_SAMPLE));
 }
 
 inline const Input *moving(const Memory *memory)

@@ -6,14 +6,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.lib.recfunctions import repack_fields
+from numpy.lib.recfunctions import append_fields, repack_fields
 
+from ...base.collected_warnings import warn_once
 from ...base.known_names import require_different
 from ...cosimulation.experiment import Experiment
 from ...cosimulation.runs import run
 from ...cosimulation.system import Connection, Port, System
 from ...cosimulation.wiring import Fit, fit
-from ...loop.settings import Settings, loop
+from ...loop.settings import Settings, loop, running
 from ...loop.stale_fmus import warn_of_stale
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.signals import Signal, lines
@@ -35,15 +36,20 @@ PASSES = {
 }
 """What the controller gets from SignalFaults, and what that gets in its place."""
 
+STATUS, T_DAMP = "controller.status", "controller.T_damp"
+
+NOT_JUDGED = ("noticed", "stale", "false alarm", "back")
+"""The judges that read the status, which a controller of somebody else need not tell."""
+
 JUDGED = (
-    Port("controller.status", None),
-    Port("controller.T_damp", "N.m"),
+    Port(STATUS, None),
+    Port(T_DAMP, "N.m"),
     Port("motor.omega_1_meas", "rad/s"),
     Port("can.valid", None),
 )
 """What judges and figures read beside what every loop puts out."""
 
-KEPT = ["controller.status", "controller.T_damp", "plant.T_gear"]
+KEPT = [STATUS, T_DAMP, "plant.T_gear"]
 """What they read of the runs without faults, of which hundreds are kept."""
 
 SLIPPERY = 1e5
@@ -143,18 +149,31 @@ class FaultRunner:
         manoeuvre = _with(on_ice, SITUATIONS[situation].manoeuvre)
         road = {**manoeuvre.road, "mu": ICE} if on_ice else manoeuvre.road
         parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise)
-        parameters |= dict(self._settings[plant].parameters) | _parameters(faults, noise)
+        settings = running(self._settings[plant].replace(control=control))
+        parameters |= dict(settings.parameters) | _parameters(faults, noise)
         given = {"inputs": signals(manoeuvre, control), "parameters": parameters, "label": manoeuvre.name}
-        return at_samples(run(self._system(plant), Experiment(manoeuvre.duration, **given)))
+        return _completed(at_samples(run(self._system(plant, control), Experiment(manoeuvre.duration, **given))))
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:
             warn_of_stale(system := self._system(plant))
             self._fitted[plant] = fit(system)
+            if STATUS in self._fitted[plant].absent:
+                file = self._fitted[plant].file(STATUS)
+                warn_once(f"{file} has no output status; not judged: {', '.join(NOT_JUDGED)}")
         return self._fitted[plant]
 
-    def _system(self, plant: str) -> System:
-        return with_faults(loop(self._settings[plant]), self._injector)
+    def _system(self, plant: str, control: bool = True) -> System:
+        return with_faults(loop(self._settings[plant], control=control), self._injector)
+
+
+def _completed(run: np.ndarray) -> np.ndarray:
+    """A run with what a controller has not told: the torque that it adds to the demand of the sample before, and a
+    status that stands for none."""
+    lacking = [name for name in (STATUS, T_DAMP) if name not in (run.dtype.names or ())]
+    demand = run["controller.T_driver"]
+    told = {STATUS: np.zeros(len(run)), T_DAMP: run["controller.T_ref"] - np.append(demand[:1], demand[:-1])}
+    return append_fields(run, lacking, [told[name] for name in lacking], usemask=False) if lacking else run
 
 
 def with_faults(system: System, injector: Path) -> System:
@@ -175,6 +194,7 @@ def with_faults(system: System, injector: Path) -> System:
         instances={**instances, INSTANCE: injector, "controller": controller, **others},
         connections=tuple(connections),
         outputs=(*system.outputs, *JUDGED),
+        optional={**system.optional, STATUS: None, T_DAMP: None},
         own=system.own | {INSTANCE},
         any_value=frozenset({INSTANCE}),
     )

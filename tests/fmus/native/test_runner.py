@@ -18,8 +18,6 @@ from tests.models.block.test_runner import (  # noqa: F401
     Counter,
     Number,
     counting,
-    test_a_clock_put_back_makes_no_tick_twice,
-    test_a_clock_put_forward_skips_no_tick,
     test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held,
     test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sample_later,
     test_a_tick_within_a_thousandth_of_a_sample_before_the_end_of_a_step_is_at_it,
@@ -30,17 +28,17 @@ from tests.models.block.test_runner import (  # noqa: F401
 
 TICK = """
 #include "all.c"
-void tick(double u, double elapsed, double duration, double numbers[3]);
-void tick(double u, double elapsed, double duration, double numbers[3])
+void tick(double u, double duration, double numbers[3]);
+void tick(double u, double duration, double numbers[3])
 {
-    Memory memory = {.values.u.n = u, .x.n = numbers[0], .coming.n = numbers[1], .ticks = numbers[2]};
+    Memory memory = {.values.u.n = u, .x.n = numbers[0], .coming.n = numbers[1], .to_tick = numbers[2]};
     Next next;
     stay(&memory, &next);
-    advance(&memory, elapsed, duration, &next);
-    arrive(&memory, &next, elapsed + duration);
+    advance(&memory, duration, &next);
+    arrive(&memory, &next, 0.0);
     numbers[0] = memory.x.n;
     numbers[1] = memory.coming.n;
-    numbers[2] = memory.ticks;
+    numbers[2] = memory.to_tick;
 }
 """
 
@@ -59,15 +57,15 @@ class CompiledRunner(SampledRunner):
 
     def __init__(self, library: ctypes.CDLL, block: SampledBlock) -> None:
         super().__init__(block, *START)
-        library.tick.argtypes = [*[ctypes.c_double] * 3, ctypes.POINTER(ctypes.c_double)]
+        library.tick.argtypes = [*[ctypes.c_double] * 2, ctypes.POINTER(ctypes.c_double)]
         self._library = library
 
     def advance(self, u: Any, duration: float) -> None:
-        elapsed, x, coming, ticks = self.memory
-        numbers = (ctypes.c_double * 3)(x.n, coming.n, ticks)
-        self._library.tick(u.n, elapsed, duration, numbers)
-        x, coming, ticks = numbers
-        self.restore((elapsed + duration, Number(x), Number(coming), int(ticks)))
+        x, coming, to_tick = self.memory
+        numbers = (ctypes.c_double * 3)(x.n, coming.n, to_tick)
+        self._library.tick(u.n, duration, numbers)
+        x, coming, to_tick = numbers
+        self.restore((Number(x), Number(coming), to_tick))
 
 
 @pytest.fixture(scope="module")

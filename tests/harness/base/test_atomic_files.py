@@ -1,11 +1,12 @@
 """Files are complete or absent, and as they were before where what writes several is stopped."""
 
 import multiprocessing
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
-from driveline.harness.base.atomic_files import as_before_if_stopped, remove, write_text
+from driveline.harness.base.atomic_files import as_before_if_stopped, remove, unchanged_if_stopped, write_text
 
 
 def files(folder: Path) -> dict[str, str]:
@@ -29,6 +30,23 @@ def test_what_is_stopped_leaves_all_as_it_was(tmp_path: Path) -> None:
             other.start()
             other.join()
         assert files(tmp_path)["theirs_new"] == "new"
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    assert files(tmp_path) == before
+
+
+def test_what_threads_write_after_they_were_stopped_is_taken_back(tmp_path: Path) -> None:
+    for name in ("kept.fmu", "replaced.fmu", "other.txt"):
+        write_text("old", tmp_path / name)
+    before = files(tmp_path)
+
+    @unchanged_if_stopped("*.fmu", tmp_path, tmp_path / "native" / "deep")
+    def stopped() -> None:
+        with ThreadPoolExecutor() as pool:
+            for name in ("new.fmu", "replaced.fmu", "native/deep/new.fmu"):
+                pool.submit(write_text, "new", tmp_path / name)
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

@@ -73,7 +73,8 @@ def test_compiled_steps_and_those_in_python_convert_alike(both_built, theirs):
 def test_a_mapped_variable_without_a_unit_is_said(both_built, theirs, caplog):
     warn_once.cache_clear()
     fit(loop(theirs, folder=both_built, mapping=MAPPING))
-    assert caplog.messages == [f"{theirs.name}: what is mapped to v has no unit; it is taken to be in m/s"]
+    text = f"{theirs.name}: variables without a unit are taken to be in that of the loop: v in m/s"
+    assert caplog.messages == [text]
 
 
 def test_nothing_changes_where_names_and_units_are_the_same(both_built):
@@ -132,15 +133,15 @@ def test_all_that_does_not_fit_is_named_at_once_and_each_once(both_built, theirs
     assert sorted(named) == ["plant.J_1", "plant.T_gear", "plant.T_mot", "plant.omega_1", "plant.v_0"]
 
 
-def test_a_unit_that_differs_is_only_converted_on_request(both_built, plain, tmp_path):
+@pytest.mark.parametrize("unit", ["rpm", "1/min", "U/min", "deg/s"])
+def test_a_unit_that_differs_is_converted(both_built, plain, tmp_path, unit):
     def change(xml):
-        return xml.replace('unit="rad/s"', 'unit="rpm"', 1)
+        return xml.replace('unit="rad/s"', f'unit="{unit}"', 1)
 
-    plant = tampered(plain, tmp_path / "rpm.fmu", change)
-    with pytest.raises(WiringError, match=r"\(--map plant\.omega_1=omega_1 converts it\)"):
-        simulate(TIPIN, plant, folder=both_built)
-    first = simulate(TIPIN, plant, folder=both_built, mapping={"plant.omega_1": "omega_1"})[0]
-    assert first["plant.omega_1"] == pytest.approx(first["plant.omega_2"] * pi / 30.0, rel=1e-12)
+    plant, one = tampered(plain, tmp_path / "other.fmu", change), pi / (180.0 if unit == "deg/s" else 30.0)
+    for mapping in ({}, {"plant.omega_1": "omega_1"}):
+        first = simulate(TIPIN, plant, folder=both_built, mapping=mapping)[0]
+        assert first["plant.omega_1"] == pytest.approx(first["plant.omega_2"] * one, rel=1e-12)
 
 
 def test_a_mapping_is_read_from_text():

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from driveline.fmus.catalogue import EVERY
 from driveline.harness.base.errors import WiringError
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.cosimulation.runs import run
-from driveline.harness.loop.places import CONNECTIONS, OPTIONAL, PLACES, PLANTS
+from driveline.harness.loop.places import CONNECTIONS, NO_DAMPING, OPTIONAL, PLACES, PLANTS
 from driveline.harness.loop.settings import chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, simulate, start
@@ -87,12 +88,15 @@ def test_a_controller_need_not_use_every_signal(both_built, relay, caplog):
     assert noted - without_unit == {name for name in OPTIONAL if name.startswith("controller.")}
 
 
-def test_what_is_always_on_cannot_be_switched_off(both_built, relay):
-    with pytest.raises(WiringError, match=r"controller\.enable: Relay\.fmu does not have it and .* always 1"):
-        simulate(SHORT, folder=both_built, controller=relay, mapping=FEEDTHROUGH, control=False)
-    system = loop(PLANTS[0], folder=both_built, controller=relay, mapping=FEEDTHROUGH)
+def test_without_damping_none_stands_in_the_place_of_a_controller_that_is_always_on(native, native_builder, relay):
+    folder = native_builder(EVERY[NO_DAMPING], native.parent).parent.parent
+    given = {"folder": folder, "build": "native", "seed": 3}
+    theirs = {"controller": relay, "mapping": FEEDTHROUGH, "parameters": {"controller.gain": 2.0}}
+    off = simulate(SHORT, **given, **theirs, control=False)
+    np.testing.assert_array_equal(off, simulate(SHORT, **given, controller=NO_DAMPING, control=False))
+    system = loop(PLANTS[0], **given, controller=relay, mapping=FEEDTHROUGH)
     at_times = signals(SHORT) | {"controller.enable": lambda t: t < 0.5}
-    with pytest.raises(WiringError, match=r"controller\.enable"):
+    with pytest.raises(WiringError, match=r"controller\.enable: Relay\.fmu does not have it and .* always 1"):
         run(system, Experiment(SHORT.duration, inputs=at_times, parameters=start(SHORT)))
 
 

@@ -105,6 +105,42 @@ def test_a_file_that_was_cut_off_is_refused_in_one_line(
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.parametrize("version", ["2.14", "3.30", "4.10"])
+def test_every_version_of_mdf_is_read(tmp_path: Path, version: str) -> None:
+    from asammdf import MDF, Signal
+
+    path, time = tmp_path / "drive.mdf", DRIVE["Time"][0]
+    with MDF(version=version) as file:
+        file.append([Signal(x, time, name=name, unit=unit) for name, (x, unit) in list(DRIVE.items())[1:]])
+        path = file.save(path, overwrite=True)
+    require_same(read_drive(path), as_read(DRIVE))
+
+
+NO_VALUE = {
+    "a text for a value": {"val_0": 65535, "text_0": b"SNA", "default_addr": {"a": 0.01, "b": 0.0}},
+    "a text for a range": {"lower_0": 65534, "upper_0": 65535, "text_0": b"SNA", "default_addr": {"a": 0.01, "b": 0.0}},
+    "no text, but all bits set": {"a": 0.01, "b": 0.0},
+}
+
+
+@pytest.mark.parametrize("name", NO_VALUE)
+def test_what_a_conversion_says_to_be_no_value_is_none(tmp_path: Path, name: str) -> None:
+    from asammdf import MDF, Signal
+
+    raw = np.round(100.0 * DRIVE["Velocity"][0]).astype(np.uint16)
+    raw[:50] = 65535
+    raw[100] = 65535
+    time = DRIVE["Time"][0]
+    with MDF(version="4.10") as file:
+        torque = Signal(DRIVE["Motor Torque"][0], time, name="Motor Torque", unit="Nm")
+        file.append([Signal(raw, time, name="Velocity", unit="km/h", conversion=NO_VALUE[name]), torque])
+        path = file.save(tmp_path / "drive.mf4", overwrite=True)
+    found = read_drive(path)
+    assert found.time.tolist() == time[50:].tolist()
+    np.testing.assert_allclose(found.v, DRIVE["Velocity"][0][50:] / 3.6, atol=2e-2)
+    assert sum(len(lack.times) for lack in found.channels["v"].lacks) == (51 if "bits" in name else 1)
+
+
 @pytest.mark.parametrize(("name", "package"), [("drive.parquet", "pyarrow.parquet"), ("drive.mf4", "asammdf")])
 def test_without_the_extra_it_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, package: str

@@ -1,5 +1,6 @@
 """A recording is read whatever habit its logger has, or refused in a line that says what to do."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from driveline.harness.recordings.channel_rules import of_channels
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.source import RecordingError
+from driveline.harness.recordings.time_base import Cut
 from tests.harness.recordings.logger_texts import HABITS, TIME, T, V
 
 
@@ -19,6 +21,10 @@ def test_a_habit_of_loggers(tmp_path: Path, name: str) -> None:
         with pytest.raises(RecordingError, match=habit.refused) as refusal:
             read_drive(path, dict(habit.columns))
         assert str(refusal.value).isprintable()
+        if offered := re.search(r"--from (\S+) --to (\S+)", str(refusal.value)):
+            cut = Cut(*map(float, offered.groups()))
+            piece = read_drive(path, dict(habit.columns), cut=cut)
+            assert (piece.time[0], piece.time[-1]) == pytest.approx(cut)
         return
     drive = read_drive(path, dict(habit.columns))
     kept = np.array(habit.kept, dtype=int)

@@ -33,7 +33,7 @@ from driveline.harness.recordings.drive import Drive, read_drive
 from driveline.harness.recordings.file_units import FileUnit
 from driveline.harness.recordings.findings import MOST_MARKED, Finding, Rule
 from driveline.harness.recordings.force_balance import EVERY, LARGEST, SMALLEST, Balance, Forces, balance, forces
-from driveline.harness.recordings.missing_values import BITS, ENDS, NINES, RESERVED, coded, is_code
+from driveline.harness.recordings.missing_values import BITS, ENDS, NINES, RESERVED, SCALED, coded, is_code
 from driveline.harness.recordings.plausibility import (
     BEYOND,
     FOLLOWED,
@@ -194,10 +194,10 @@ def test_a_code_is_found_only_far_from_all_other_values(code: float) -> None:
 @pytest.mark.parametrize("resolution", [1.0, 0.5, 0.25, 0.1, 0.05, 0.01, 0.001])
 @pytest.mark.parametrize("integer", sorted(RESERVED))
 def test_a_reserved_integer_times_the_resolution_is_a_code(resolution: float, integer: float) -> None:
-    """Of 8, 12, 16 and 32 bits, further from all others than their range."""
+    """Of 8, 12, 16 and 32 bits, far from all others."""
     code = resolution * integer
-    for apart, expected in ((1.01, True), (0.99, False)):
-        others = code - np.sign(code) * np.linspace(apart, 1.0 + apart, 50) * 0.3 * abs(code)
+    for apart, expected in ((1.01 * SCALED, True), (0.99 * SCALED, False)):
+        others = code - np.sign(code) * np.linspace(apart, 1.0 + apart, 50) * 0.17 * abs(code)
         written = np.append(others, code)
         assert coded(written)[-1] == expected or is_code(code)
         assert not coded(written)[:-1].any()

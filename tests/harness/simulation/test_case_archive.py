@@ -101,7 +101,7 @@ def test_a_campaign_that_was_stopped_goes_on_and_says_so(path: Path) -> None:
         made.archive["b"] = 2.0
         made.files.append(path.with_suffix(".md"))
     record = json.loads(path.with_suffix(".json").read_text())
-    assert record["files"] == ["answers.csv", "answers.md"]
+    assert list(record["files"]) == ["answers.csv", "answers.md"]
     assert record["run"].items() >= RUN.items()
     with begun(path) as made:
         assert made.archive == {"a": 1.0, "b": 2.0}

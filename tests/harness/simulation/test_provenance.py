@@ -43,7 +43,7 @@ def made(both_built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_record_tells_what_made_the_signals(made: Path, both_built: Path) -> None:
     record = json.loads((made / f"{NAME}.json").read_text(encoding="utf-8"))
     assert record["program"].startswith("driveline-damping ")
-    assert record["files"] == [f"{NAME}.csv"]
+    assert list(record["files"]) == [f"{NAME}.csv"]
     assert (record["run"]["seed"], record["run"]["parameters"]["motor.seed"]) == (5, 5)
     assert record["run"]["parameters"].items() >= {"plant.J_1": 0.07, "controller.k_d": 2.5}.items()
     plant = both_built / "native" / "TwoMassDriveline.fmu"

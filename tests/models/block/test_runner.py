@@ -3,17 +3,18 @@
 tests/fmus/native/test_runner.py has the same said of the ticks in C.
 """
 
+import math
 from collections.abc import Callable
 from typing import Annotated, NamedTuple
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from driveline.models import two_mass_driveline
 from driveline.models.block.declaration import Real
 from driveline.models.block.integrator import Integrator
-from driveline.models.block.runner import Runner, runner
+from driveline.models.block.runner import TICK_TOLERANCE, Runner, runner
 from driveline.models.block.types import Block, SampledBlock
 from tests.models.block.test_operators import every_block
 
@@ -66,7 +67,7 @@ ONE = Number(1.0)
 
 def test_a_run_starts_with_the_state_of_the_start(counter: Counter) -> None:
     running = counter(1.0)
-    assert (running.elapsed, running.x, shown(running)) == (0.0, Number(100.0), 100.0)
+    assert (running.x, shown(running)) == (Number(100.0), 100.0)
 
 
 def test_the_first_tick_is_made_in_the_first_step_with_its_inputs(counter: Counter) -> None:
@@ -89,7 +90,7 @@ def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held(counter: Counter
     running = counter(T_s)
     running.advance(ONE, 1.5 * T_s)
     running.advance(Number(10.0), 5.0 * T_s)
-    assert (running.elapsed, shown(running)) == (6.5 * T_s, 100.0 + 1.0 + 1.0 + 4.0 * 10.0)
+    assert shown(running) == 100.0 + 1.0 + 1.0 + 4.0 * 10.0
     assert ticks(running) == 2.0 + 5.0 * 10.0
 
 
@@ -119,29 +120,12 @@ def test_a_tick_within_a_thousandth_of_a_sample_before_the_end_of_a_step_is_at_i
 @given(steps=st.lists(st.floats(1e-3, 20.0), min_size=1, max_size=30), T_s=st.sampled_from([0.001, 0.002, 0.5, 3.0]))
 def test_ticks_do_not_depend_on_the_steps(counter: Counter, steps: list[float], T_s: float) -> None:
     pieces, whole = counter(T_s), counter(T_s)
+    samples = math.fsum(steps)
+    assume(abs((samples - TICK_TOLERANCE) % 1.0 - 0.5) < 0.5 - 1e-9)  # else rounding decides
     for step in steps:
         pieces.advance(ONE, step * T_s)
-    whole.advance(ONE, pieces.elapsed)
-    assert pieces.memory == whole.memory
-
-
-def test_a_clock_put_back_makes_no_tick_twice(counter: Counter) -> None:
-    running, seen = counter(1.0), []
-    running.advance(ONE, 1.002)
-    running.elapsed = 0.995
-    for step in (0.003, 0.002, 0.9):
-        running.advance(ONE, step)
-        seen.append(shown(running))
-    assert seen == [101.0, 101.0, 101.0]
-    assert ticks(running) == 2.0
-
-
-def test_a_clock_put_forward_skips_no_tick(counter: Counter) -> None:
-    running = counter(1.0)
-    running.advance(ONE, 0.5)
-    running.elapsed = 3.25
-    running.advance(ONE, 0.25)
-    assert ticks(running) == 4.0
+    whole.advance(ONE, samples * T_s)
+    assert ticks(pieces) == ticks(whole)
 
 
 def test_a_continuous_block_is_integrated() -> None:
@@ -150,10 +134,10 @@ def test_a_continuous_block_is_integrated() -> None:
     running, integrator = runner(block, u, p), Integrator(block)
     x = block.start(u, p)
     assert running.x == x
-    for k in range(1, 5):
+    for _ in range(4):
         running.advance(u, 0.003)
         x = integrator.advance(x, u, p, 0.003)
-        assert (running.x, running.elapsed) == (x, pytest.approx(0.003 * k))
+        assert running.x == x
     assert running.output(u) == block.output(x, u, p)
 
 

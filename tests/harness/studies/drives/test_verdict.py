@@ -120,6 +120,7 @@ def test_nothing_is_odd_in_drives_of_our_own(native: Path) -> None:
     found: list[Judged] = [judged(case, damped, settings[case.plant], follow=False) for case, damped in cases(FEW)]
     assert [str(finding) for one in found for finding in one.findings] == []
     assert sum(one.balance.fits for one in found) > FEW / 2, "most are judged"
+    assert sum(channel.named for one in found for channel in one.channels) == 0
 
 
 @pytest.mark.slow

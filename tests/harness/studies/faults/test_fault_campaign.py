@@ -10,17 +10,19 @@ from hashlib import sha256
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import DrivelineError, WiringError
+from driveline.fmus.catalogue import EVERY
+from driveline.harness.base.collected_warnings import warn_once
+from driveline.harness.base.errors import DrivelineError
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.loop.places import NO_DAMPING
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults import evidence, fault_catalogue
 from driveline.harness.studies.faults.fault_campaign import campaign
 from driveline.harness.studies.faults.fault_cases import PLANS, SITUATIONS, Case, Fault, case
 from driveline.harness.studies.faults.fault_catalogue import FRAME, KINDS, LATE, LOCK, NOTHING, SPIN
-from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
+from driveline.harness.studies.faults.fault_injection import NOT_JUDGED, FaultRunner, with_faults
 from driveline.models import signal_faults
 from driveline.models.controller import supervision
 from tests.foreign import tampered
@@ -101,15 +103,27 @@ def test_the_injector_without_a_fault_changes_nothing(injector, settings, plant)
     assert all(np.array_equal(direct[name], through[name]) for name in direct.dtype.names or ())
 
 
-@pytest.mark.parametrize("name", ["status", "T_damp"])
-def test_a_controller_without_what_the_judges_read_is_named(injector, settings, tmp_path, name):
-    def change(xml):
-        return xml.replace(f'name="{name}"', f'name="my_{name}"')
+def test_a_controller_that_tells_neither_status_nor_torque_is_judged_by_the_rest(
+    injector, settings, native_builder, tmp_path, caplog
+):
+    warn_once.cache_clear()
+    native_builder(EVERY[NO_DAMPING], settings["TwoMassDriveline"].folder)
 
-    folder = settings["TwoMassDriveline"].folder
-    mine = tampered(folder / "native" / "DampingController.fmu", tmp_path / "mine.fmu", change)
-    with pytest.raises(WiringError, match=rf"controller\.{name}: mine\.fmu has no output {name}"):
-        fit(with_faults(loop(folder=folder, build="native", controller=mine), injector))
+    def change(xml):
+        for name in ("status", "T_damp", "enable"):
+            xml = xml.replace(f'name="{name}"', f'name="my_{name}"')
+        return xml
+
+    of_ours = settings["TwoMassDriveline"]
+    mine = tampered(of_ours.folder / "native" / "DampingController.fmu", tmp_path / "mine.fmu", change)
+    theirs, ours = (
+        campaign(FaultRunner(injector, {"TwoMassDriveline": each}), [1, 3], 1, workers=1)
+        for each in (of_ours.replace(controller=mine), of_ours)
+    )
+    for their, our in zip(theirs, ours, strict=True):
+        told = {name: value for name, value in our.measured.items() if name not in NOT_JUDGED}
+        assert {name: their.measured[name] for name in told} == pytest.approx(told, rel=1e-9, abs=1e-9)
+    assert "mine.fmu has no output status; not judged: noticed, stale, false alarm, back" in caplog.text
 
 
 def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, settings):

@@ -1,0 +1,108 @@
+"""A result is made again from its record: the same, or what differs is named."""
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from shutil import copytree
+from typing import Any
+
+import pytest
+
+from driveline.harness.base.digest import digest
+from driveline.harness.commands.cli import main
+from tests.harness.commands import Capsys
+
+NAME = "TwoMassDriveline_tipin0_on"
+
+
+def answer(capsys: Capsys, *words: str) -> tuple[int, str, str]:
+    capsys.readouterr()
+    code, printed = main(words), capsys.readouterr()
+    return code, printed.out, printed.err
+
+
+@pytest.fixture(scope="module")
+def made(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with a result."""
+    folder = tmp_path_factory.mktemp("again")
+    gains = folder / "gains.toml"
+    gains.write_text("k_d = 2.5\n", encoding="utf-8")
+    words = ["simulate", "--manoeuvre", "tipin0", "--build", "native", "--fmus", str(native.parent)]
+    assert main([*words, "--parameters", str(gains), "--output", str(folder / "results"), "--quiet"]) == 0
+    return folder
+
+
+def with_record(made: Path, folder: Path, change: Callable[[Any], object]) -> Path:
+    """A copy of the result with another record."""
+    path = copytree(made / "results", folder / "copy") / f"{NAME}.json"
+    record = json.loads(path.read_text())
+    change(record)
+    path.write_text(json.dumps(record))
+    return path
+
+
+def test_a_result_is_made_again_and_is_the_same(made: Path, capsys: Capsys) -> None:
+    before = {path: path.read_bytes() for path in made.rglob("*.*")}
+    record = made / "results" / f"{NAME}.json"
+    assert answer(capsys, "again", str(record)) == (0, f"the same, to the last bit: {NAME}.csv\n", "")
+    assert {path: path.read_bytes() for path in made.rglob("*.*")} == before
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (lambda record: record["versions"].update(numpy="1.0"), "versions numpy: 1.0 there, "),
+        (lambda record: record.update(commit="abc"), "commit: abc there, "),
+        (
+            lambda record: record["inputs"].update(dict.fromkeys(record["inputs"], "sha256:1")),
+            "gains.toml: sha256:1 there",
+        ),
+        (lambda record: record["fmus"]["TwoMassDriveline"]["plant"].update(digest="2"), "plant: 2 there, "),
+        (lambda record: record["run"].update(seed=7), "run seed: 7 there, 1 here"),
+    ],
+)
+def test_what_made_it_is_named_where_it_was_something_else(
+    made: Path, tmp_path: Path, capsys: Capsys, change: Callable[[Any], object], named: str
+) -> None:
+    code, out, _ = answer(capsys, "again", str(with_record(made, tmp_path, change)))
+    (line, same) = out.splitlines()
+    assert line.startswith("made by others: ")
+    assert named in line
+    assert (code, same) == (0, f"the same, to the last bit: {NAME}.csv")
+
+
+@pytest.mark.parametrize("in_record", [False, True])
+def test_a_number_that_is_another_one_is_named(made: Path, tmp_path: Path, capsys: Capsys, in_record: bool) -> None:
+    record = with_record(made, tmp_path, lambda _: None)
+    signals = record.with_suffix(".csv")
+    lines = signals.read_text().splitlines()
+    lines[9] = lines[9].replace("0.008,", "0.0080000001,", 1)
+    signals.write_text("\n".join(lines) + "\n")
+    if in_record:
+        content = json.loads(record.read_text())
+        content["files"][signals.name] = digest(signals)
+        record.write_text(json.dumps(content))
+    code, out, _ = answer(capsys, "again", str(record))
+    assert code == 1
+    where = "line 10, time: 0.0080000001 there, 0.008 here"
+    told = f"{NAME}.csv: {where}" if in_record else f"{NAME}.csv was changed after it was written: {where}"
+    assert out == f"other numbers: {told}\n"
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (lambda record: record.pop("versions"), "is no record of a result, or one of an earlier version"),
+        (lambda record: record.update(files=["x.csv"]), "is no record of a result, or one of an earlier version"),
+        (lambda record: record.update(command_line="python mine.py"), "made by another program, .*: python mine.py$"),
+        (lambda record: record.update(folder="/nowhere"), "made in the folder /nowhere, which is not there"),
+    ],
+)
+def test_what_cannot_be_made_again_is_refused(
+    made: Path, tmp_path: Path, capsys: Capsys, change: Callable[[Any], object], named: str
+) -> None:
+    code, out, err = answer(capsys, "again", str(with_record(made, tmp_path, change)))
+    assert (code, out) == (2, "")
+    (line,) = err.splitlines()
+    assert re.search(named, line)
