@@ -189,7 +189,9 @@ class Channels:
         )
         places = {int(k): j for j, k in enumerate(index)} if samples.unreadable else {}
         odd = {places[k]: text for k, text in samples.unreadable.items() if k in places}
-        kept = np.setdiff1d(np.flatnonzero(np.isfinite(found.values)), list(odd))
+        there = np.isfinite(found.values)
+        there[list(odd)] = False
+        kept = np.flatnonzero(there)
         where = Kept(samples.where, index)
         breaks = self._unreadable(column, where, odd, kept, time)
         if drawn and len(none := np.flatnonzero(np.isnan(written))):

@@ -57,11 +57,12 @@ def is_scaled_code(value: float) -> bool:
 
 def coded(written: np.ndarray) -> np.ndarray:
     """Which of the values of a file (n,) stand for a missing one: beyond all others, and far from them."""
-    values = np.unique(written[np.isfinite(written)])
+    values = np.sort(written[np.isfinite(written)])
+    values = values[np.diff(values, prepend=-np.inf) > 0.0]  # np.unique hashes, which takes ten times as long
     outer = np.unique(np.concatenate((values[:MOST], values[-MOST:])))
     sure = np.array([is_code(value) for value in outer], dtype=bool)
     perhaps = np.array([is_scaled_code(value) for value in outer], dtype=bool)
-    others = np.setdiff1d(values, outer[sure | perhaps])
+    others = values[~np.isin(values, outer[sure | perhaps])]
     if not len(others):
         return np.zeros(len(written), dtype=bool)
     distance = np.maximum(others[0] - outer, outer - others[-1])
