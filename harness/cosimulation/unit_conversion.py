@@ -39,7 +39,19 @@ POUNDS = re.compile(r"(?P<force>lbs?f?)[ .-]?(?P<arm>ft|in)|(?P<first>ft|in)[ .-
 """Torque in pounds: lb-ft, ft-lb, lbf.in."""
 
 TORQUE = re.compile(r"(?P<prefix>[mkM]?)N[ .-]?m(?P<damping>[ .]?s)?(?P<per>/.+)?")
-"""N.m, N.m/rad, and N.m.s/rad, with or without dots."""
+INERTIA = re.compile(r"kg[ .]?m\^?2")
+"""N.m, N.m/rad, N.m.s/rad, and kg.m2, with or without dots."""
+
+NESTED = re.compile(r"/\(([^()/]+)/([^()/]+)\)")
+"""A quotient below the line: N.m/(rad/s)."""
+
+WRITTEN = "km/h kmh kph m/s rpm U/min 1/min rad/s deg/s Nm kNm s ms min h m km ft"
+
+FOLDED = {unit.casefold(): unit for unit in WRITTEN.split()}
+"""Units whose case is known where a unit as it is written does not convert: KM/H, NM, nm."""
+
+STANDARD_GRAVITY = 9.80665
+"""What an acceleration in g is multiplied by to be in m/s2."""
 
 SI = "SI"
 """Stands for the unit of the SI, whatever the dimension."""
@@ -49,19 +61,22 @@ def spelled(unit: str) -> str:
     """The unit as in Modelica."""
     text = unit.replace("**", "^").translate(SIGNS).strip()
     text = SPELLED.get(text, text)
-    torque = TORQUE.fullmatch(text)
-    if torque:
+    text = NESTED.sub(r".\2/\1", text)
+    if torque := TORQUE.fullmatch(text):
         return f"{torque['prefix']}N.m{'.s' if torque['damping'] else ''}{torque['per'] or ''}"
-    pounds = POUNDS.fullmatch(text)
-    if pounds:
+    if INERTIA.fullmatch(text):
+        return "kg.m2"
+    if pounds := POUNDS.fullmatch(text):
         return f"lbf.{(pounds['arm'] or pounds['first']).lower()}"
     return text.replace("°", "deg").replace(" ", ".")
 
 
+@cache
 def factor(unit: str, target_unit: str) -> float:
     """What a value in a unit is multiplied by to be in the wanted one.
 
-    An angle is a dimension here: Hz and rad/s, or N.m and N.m/rad, do not convert into each other.
+    An angle is a dimension here: Hz and rad/s, or N.m and N.m/rad, do not convert into each other. In an acceleration,
+    g is that of the Earth and not the gram.
 
     Raises:
         ValueError: a unit is not known, or they do not convert by a factor; the message is to stand after
@@ -69,6 +84,17 @@ def factor(unit: str, target_unit: str) -> float:
     """
     if unit == target_unit:
         return 1.0
+    if unit.strip() == "g" and target_unit == "m/s2":
+        return STANDARD_GRAVITY
+    try:
+        return _finite(unit, target_unit)
+    except ValueError:
+        if (folded := FOLDED.get(unit.strip().casefold(), unit)) == unit:
+            raise
+        return _finite(folded, target_unit)
+
+
+def _finite(unit: str, target_unit: str) -> float:
     try:
         one = _factor(unit, target_unit)
     except OverflowError:
@@ -92,6 +118,8 @@ def _factor(unit: str, target_unit: str) -> float:
 
 def known(unit: str) -> bool:
     """Whether the text is a unit."""
+    if unit.strip().casefold() in FOLDED:
+        return True
     try:
         _parsed(unit, _registry())
     except ValueError:

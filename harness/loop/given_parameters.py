@@ -94,9 +94,9 @@ def _other_unit(interface: Interface, name: str, meant: str, mapping: Mapping[st
     if unit in (None, "", meant):
         return None
     try:
-        factor(unit, meant)
+        other = factor(unit, meant)
     except ValueError as reason:
         return f"{name} {reason}, the unit of the file"
-    if name in mapping:
+    if name in mapping or other == 1.0:
         return None
     return f"{name} is in {unit}; the file gives it in {meant} (--map {name}={theirs} converts it)"

@@ -160,7 +160,7 @@ def _number(key: str, value: Any, unit: str) -> float:
 
 def _converted(key: str, text: str, unit: str) -> float:
     from ..base.written_numbers import real
-    from ..recordings.recording_units import factor_to
+    from ..cosimulation.unit_conversion import factor
 
     number, _, given = plain(text, 60).partition(" ")
     value = real(number)
@@ -169,7 +169,7 @@ def _converted(key: str, text: str, unit: str) -> float:
     try:
         if unit == "rad" and given == "%":
             return atan(0.01 * value)
-        return value * factor_to(unit, given)
+        return value * factor(given, unit)
     except ValueError as reason:
         raise ManoeuvreError(f'{key} = "{plain(text, 60)}" {reason}') from reason
 

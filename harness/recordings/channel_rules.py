@@ -147,7 +147,7 @@ def excursions(channel: Channel) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         if width == 1 or width * _interval(channel) <= BRIEF * (1.0 + 1e-6):
             off = _off(x, width)
             at = np.flatnonzero(off > smallest)
-            yield at, off[at] / np.maximum(_range_around(x, at, width), np.finfo(float).tiny)
+            yield at, off[at] / np.maximum(_range_around(x, at, width), 1e-9 * off[at])
 
 
 def _interval(channel: Channel) -> float:

@@ -6,10 +6,10 @@ from shlex import quote
 
 from ..base.known_names import nearest
 from ..base.plain_text import plain
+from ..cosimulation.unit_conversion import factor, known
 from .clock_times import EXAMPLES
 from .headings import key, split, without_brackets
 from .quantities import BY_UNIT, QUANTITIES, Aliases, example
-from .recording_units import factor_to, is_unit
 from .source import Column, RecordingError, Source
 
 NAMES_SHOWN = 3
@@ -160,13 +160,12 @@ def si_of(quantity: str, unit: str) -> tuple[str, float]:
     Raises:
         ValueError: it does not convert; the message is to stand after the name of the column.
     """
-    declared = QUANTITIES[quantity]
-    if declared.also:
+    for wanted in filter(None, (QUANTITIES[quantity].also, QUANTITIES[quantity].unit)):
         try:
-            return declared.also, factor_to(declared.also, unit)
-        except ValueError:
-            pass  # then it must be of the first
-    return declared.unit, factor_to(declared.unit, unit)
+            return wanted, factor(unit, wanted)
+        except ValueError as problem:
+            reason = problem
+    raise ValueError(f"{reason}; wanted is {QUANTITIES[quantity].unit} or what converts into it") from reason
 
 
 def _fitting(quantity: str, found: Sequence[Place]) -> list[Place]:
@@ -185,7 +184,7 @@ def _converts(quantity: str, unit: str) -> bool:
 def _readings(column: Column) -> list[tuple[str, str | None]]:
     """Name and unit as the column can be understood, as they stand first."""
     others = without_brackets(column.name) if column.unit is None else []
-    return [(column.name, column.unit), *((name, unit) for name, unit in others if is_unit(unit))]
+    return [(column.name, column.unit), *((name, unit) for name, unit in others if known(unit))]
 
 
 def _doubled(quantity: str, headings: Sequence[str]) -> str:

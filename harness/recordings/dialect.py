@@ -9,9 +9,9 @@ from itertools import islice, zip_longest
 from pathlib import Path
 from statistics import median
 
+from ..cosimulation.unit_conversion import known
 from .cells import decimal_of, is_missing, is_number
 from .clock_times import is_clock_time
-from .recording_units import is_unit
 from .source import RecordingError
 
 SEPARATORS = ("\t", ";", ",", "|", " ")
@@ -136,6 +136,4 @@ def _are_units(cells: Sequence[str], names: Sequence[str]) -> bool:
     """Whether a row below names holds units, for each name one or nothing."""
     units = [cell.strip(" []()") for cell in cells]
     named = [bool(name.strip()) for name in names]
-    return any(units) and all(
-        not unit or (k < len(named) and named[k] and is_unit(unit)) for k, unit in enumerate(units)
-    )
+    return any(units) and all(not unit or (k < len(named) and named[k] and known(unit)) for k, unit in enumerate(units))

@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from driveline.harness.cosimulation.unit_conversion import LONGEST, SI, factor
+from driveline.harness.cosimulation.unit_conversion import LONGEST, SI, factor, known
 
 
 @pytest.mark.parametrize(
@@ -30,10 +30,48 @@ from driveline.harness.cosimulation.unit_conversion import LONGEST, SI, factor
         ("g.cm2", SI, 1e-7),
         ("kJ/(kg.K)", SI, 1e3),
         ("N.m.s/rad", SI, 1.0),
+        ("Nms/rad", "N.m.s/rad", 1.0),
+        ("N.m/(rad/s)", "N.m.s/rad", 1.0),
+        ("Nm/(deg/s)", "N.m.s/rad", 180.0 / pi),
+        ("Nm/rad", "N.m/rad", 1.0),
+        ("kgm2", "kg.m2", 1.0),
+        ("kg m^2", "kg.m2", 1.0),
+        ("kg·m²", "kg.m2", 1.0),
+        ("U/min", "rad/s", pi / 30.0),
+        ("min^-1", "rad/s", pi / 30.0),
+        ("°/s", "rad/s", pi / 180.0),
+        ("kmh", "m/s", 1.0 / 3.6),
+        ("mph", "m/s", 0.44704),
+        ("N·m", "N.m", 1.0),
+        ("N m", "N.m", 1.0),
+        ("N-m", "N.m", 1.0),
+        ("kNm", "N.m", 1e3),
+        ("g", "m/s2", 9.80665),
+        ("g", "kg", 1e-3),
+        ("m/s²", "m/s2", 1.0),
+        ("m/s**2", "m/s2", 1.0),
+        ("-", "1", 1.0),
+        ("ms", "s", 1e-3),
+        ("µs", "s", 1e-6),
+        ("\u03bcs", "s", 1e-6),
+        ("Grad", "rad", pi / 180.0),
+        ("KM/H", "m/s", 1.0 / 3.6),
+        ("M/S", "m/s", 1.0),
+        ("NM", "N.m", 1.0),
+        ("nm", "N.m", 1.0),
+        ("nm", "m", 1e-9),
+        ("MS", "s", 1e-3),
+        ("Ms", "s", 1e6),
+        ("lb-ft", "N.m", 1.3558179483314),
+        ("LB-FT", "N.m", 1.3558179483314),
+        ("ft-lb", "N.m", 1.3558179483314),
+        ("lbf.ft", "N.m", 1.3558179483314),
+        ("in-lbs", "N.m", 0.112984829027617),
     ],
 )
 def test_a_unit_converts_by_its_factor(unit, target_unit, expected):
-    assert factor(unit, target_unit) == pytest.approx(expected, rel=1e-14)
+    assert factor(unit, target_unit) == pytest.approx(expected, rel=1e-12)
+    assert known(unit)
 
 
 @pytest.mark.parametrize("unit", ["N.m", "parsec", "whatever it is called"])
@@ -64,6 +102,9 @@ def test_a_unit_may_have_exponents_of_one_digit_and_sixty_characters():
         ("J/kg.K", SI, "'J/kg.K', which is not a known unit"),
         ("import", "m", "'import', which is not a known unit"),
         ("", "m", "'', which is not a known unit"),
+        ("quux", "s", "'quux', which is not a known unit"),
+        ("m0", "m", "'m0', which is not a known unit"),
+        ("m**9", "m", "which does not convert into m"),
         # what would take for ever, or is larger than any number
         ("h200.min-200.N.m", "N.m", "'h200.min-200.N.m', which is not a known unit"),
         ("h99999999.min-99999999", "1", "which is not a known unit"),

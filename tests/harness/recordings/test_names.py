@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from driveline.harness.cosimulation.unit_conversion import factor
 from driveline.harness.recordings.channels import Channels
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.headings import split, without_brackets
 from driveline.harness.recordings.measurement import read_measurement
 from driveline.harness.recordings.quantities import QUANTITIES, aliases
-from driveline.harness.recordings.recording_units import factor_to, is_unit
 from driveline.harness.recordings.source import RecordingError
 from tests.harness.recordings.car import RADIUS, RATIO, drive
 from tests.harness.recordings.conftest import Write
@@ -47,63 +47,6 @@ def test_a_unit_in_brackets_or_parentheses(heading: str, name: str, unit: str | 
 )
 def test_a_unit_without_brackets(heading: str, readings: list[tuple[str, str]]) -> None:
     assert list(without_brackets(heading)) == readings
-
-
-@pytest.mark.parametrize(
-    ("unit", "wanted", "factor"),
-    [
-        ("rpm", "rad/s", np.pi / 30.0),
-        ("U/min", "rad/s", np.pi / 30.0),
-        ("min^-1", "rad/s", np.pi / 30.0),
-        ("deg/s", "rad/s", np.pi / 180.0),
-        ("°/s", "rad/s", np.pi / 180.0),
-        ("km/h", "m/s", 1.0 / 3.6),
-        ("kmh", "m/s", 1.0 / 3.6),
-        ("mph", "m/s", 0.44704),
-        ("N·m", "N.m", 1.0),
-        ("N*m", "N.m", 1.0),
-        ("N m", "N.m", 1.0),
-        ("kNm", "N.m", 1e3),
-        ("g", "m/s2", 9.80665),
-        ("m/s²", "m/s2", 1.0),
-        ("m/s**2", "m/s2", 1.0),
-        ("g", "kg", 1e-3),
-        ("%", "1", 0.01),
-        ("-", "1", 1.0),
-        ("ms", "s", 1e-3),
-        ("µs", "s", 1e-6),
-        ("\u03bcs", "s", 1e-6),
-        ("Grad", "rad", np.pi / 180.0),
-        ("KM/H", "m/s", 1.0 / 3.6),
-        ("M/S", "m/s", 1.0),
-        ("NM", "N.m", 1.0),
-        ("nm", "N.m", 1.0),
-        ("nm", "m", 1e-9),
-        ("MS", "s", 1e-3),
-        ("Ms", "s", 1e6),
-        ("lb-ft", "N.m", 1.3558179483314),
-        ("LB-FT", "N.m", 1.3558179483314),
-        ("ft-lb", "N.m", 1.3558179483314),
-        ("lbf.ft", "N.m", 1.3558179483314),
-        ("in-lbs", "N.m", 0.112984829027617),
-    ],
-)
-def test_units_as_files_write_them(unit: str, wanted: str, factor: float) -> None:
-    assert factor_to(wanted, unit) == pytest.approx(factor, rel=1e-12)
-    assert is_unit(unit)
-
-
-@pytest.mark.parametrize(
-    ("unit", "wanted"), [("Hz", "rad/s"), ("1/s", "rad/s"), ("km", "m/s"), ("quux", "s"), ("", "s"), ("m0", "m")]
-)
-def test_a_unit_that_does_not_convert_is_refused(unit: str, wanted: str) -> None:
-    with pytest.raises(ValueError, match=f"wanted is {wanted}"):
-        factor_to(wanted, unit)
-
-
-def test_a_power_that_is_refused_is_shown_as_one() -> None:
-    with pytest.raises(ValueError, match=r"^is in m\^9, which does not convert into m;"):
-        factor_to("m", "m**9")
 
 
 def test_every_quantity_has_a_name_of_ours() -> None:
@@ -163,7 +106,7 @@ def test_every_name_takes_every_unit_in_every_form(tmp_path: Path, name: str) ->
         for form in FORMS:
             path = tmp_path / "drive.csv"
             path.write_text(f"t [s];v [m/s];{form.format(name, unit)}\n0;10;1\n1;10;2\n", encoding="utf-8")
-            assert read_drive(path).T_mot.tolist() == [factor_to("N.m", unit), 2.0 * factor_to("N.m", unit)], form
+            assert read_drive(path).T_mot.tolist() == [factor(unit, "N.m"), 2.0 * factor(unit, "N.m")], form
 
 
 def test_names_in_german(tmp_path: Path) -> None:
