@@ -8,7 +8,7 @@ from driveline.harness.explorer.module import built_as_sources
 
 PAGE = "explore.html"
 
-PICTURE = "[![the page: sliders, metrics, curves without and with damping]"
+PICTURE = "![the page: sliders, metrics, curves without and with damping]"
 """What stands in the README in its place."""
 
 FRAME = f"""<iframe src="{PAGE}" title="the loop with sliders" class="explorer" loading="lazy"></iframe>

@@ -32,14 +32,16 @@ from .input_lines import Line
 from .steps import Refusal
 
 SOURCE = Path(__file__).with_name("steps.c")
-"""It is there in a checkout, where it can change."""
+
+CHANGES = (Path(__file__).parents[2] / "build_fmus.py").is_file()
+"""Whether it can: in a checkout."""
 
 
 def _library() -> CDLL | None:
     spec = find_spec(f"{__package__}._steps")
     if not (spec and spec.origin):
         return None
-    if SOURCE.is_file() and SOURCE.stat().st_mtime > Path(spec.origin).stat().st_mtime:
+    if CHANGES and SOURCE.stat().st_mtime > Path(spec.origin).stat().st_mtime:
         return None
     return CDLL(spec.origin)
 
