@@ -94,6 +94,15 @@ def factor(unit: str, target_unit: str) -> float:
         return _finite(folded, target_unit)
 
 
+def converts(unit: str, target_unit: str) -> bool:
+    """Whether there is a factor."""
+    try:
+        factor(unit, target_unit)
+    except ValueError:
+        return False
+    return True
+
+
 def _finite(unit: str, target_unit: str) -> float:
     try:
         one = _factor(unit, target_unit)

@@ -6,7 +6,7 @@ from shlex import quote
 
 from ..base.known_names import nearest
 from ..base.plain_text import plain
-from ..cosimulation.unit_conversion import factor, known
+from ..cosimulation.unit_conversion import converts, factor, known
 from .clock_times import EXAMPLES
 from .headings import key, split, without_brackets
 from .quantities import BY_UNIT, QUANTITIES, Aliases, example
@@ -160,25 +160,19 @@ def si_of(quantity: str, unit: str) -> tuple[str, float]:
     Raises:
         ValueError: it does not convert; the message is to stand after the name of the column.
     """
-    for wanted in filter(None, (QUANTITIES[quantity].also, QUANTITIES[quantity].unit)):
-        try:
-            return wanted, factor(unit, wanted)
-        except ValueError as problem:
-            reason = problem
-    raise ValueError(f"{reason}; wanted is {QUANTITIES[quantity].unit} or what converts into it") from reason
+    declared = QUANTITIES[quantity]
+    if declared.also and converts(unit, declared.also):
+        return declared.also, factor(unit, declared.also)
+    try:
+        return declared.unit, factor(unit, declared.unit)
+    except ValueError as reason:
+        raise ValueError(f"{reason}; wanted is {declared.unit} or what converts into it") from reason
 
 
 def _fitting(quantity: str, found: Sequence[Place]) -> list[Place]:
     """Those whose unit is one of the quantity."""
-    return [(place, unit) for place, unit in found if unit is not None and _converts(quantity, unit)]
-
-
-def _converts(quantity: str, unit: str) -> bool:
-    try:
-        si_of(quantity, unit)
-    except ValueError:
-        return False
-    return True
+    units = (QUANTITIES[quantity].unit, QUANTITIES[quantity].also)
+    return [each for each in found if any(each[1] and unit and converts(each[1], unit) for unit in units)]
 
 
 def _readings(column: Column) -> list[tuple[str, str | None]]:

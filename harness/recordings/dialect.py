@@ -71,15 +71,16 @@ def dialect_of(text: str, path: Path) -> Dialect:
     above = [(line, _uncommented(cells)) for line, cells in above]
     if not above:
         raise RecordingError(f"{path}, line {rows[0][0]}: there is no line of names above the numbers")
-    names_line, names = above[-1]
-    units_line, units = names_line, ()
-    if len(above) > 1 and _are_units(names, above[-2][1]):
-        (names_line, names), (units_line, units) = above[-2], above[-1]
+    of_units = (k for k in range(len(above) - 1, 0, -1) if _are_units(above[k][1], above[k - 1][1]))
+    if k := next(of_units, 0):
+        (names_line, names), units = above[k - 1], above[k][1]
+    else:
+        (names_line, names), units = above[-1], ()
     columns = zip_longest(*(cells for _, cells in below), fillvalue="")
     firsts = (next((cell for cell in column if not is_missing(cell)), "") for column in columns)
     clocks = tuple(not is_number(cell) and is_clock_time(cell) for cell in firsts)
     decimal = decimal_of([cell for _, cells in below for cell in cells])
-    return Dialect(separator, decimal, tuple(names), tuple(units), clocks, names_line, units_line + 1)
+    return Dialect(separator, decimal, tuple(names), tuple(units), clocks, names_line, above[-1][0] + 1)
 
 
 def _uncommented(cells: Sequence[str]) -> Sequence[str]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
+from ..cosimulation.unit_conversion import converts, factor
 from .clock_times import Clock
 from .source import Column, RecordingError, Samples, Where, samples
 
@@ -42,6 +43,7 @@ class MdfFile:
         self.headings = str(path)
         with _opened(path) as file:
             found = list(_channels(file))
+            self._master_factors = {group: _master_factor(file, group) for group, _, _ in found}
         often = Counter(channel.name for _, _, channel in found)
         self._places = [(group, index) for group, index, _ in found]
         self.columns: Sequence[Column] = [
@@ -63,7 +65,7 @@ class MdfFile:
             signal = file.get(group=group, index=index, raw=True)
         if signal.samples.dtype.kind not in "biuf" or signal.samples.ndim != 1:
             raise RecordingError(f"{self.path}: {column.heading} holds no numbers")
-        time = np.asarray(signal.timestamps, dtype=float)
+        time = np.asarray(signal.timestamps, dtype=float) * self._master_factors[group]
         same = times.setdefault(group, time)
         time = same if np.array_equal(same, time) else time
         where = Where("sample {0} at {1:g} s", time)
@@ -89,6 +91,12 @@ def _opened(path: Path) -> Iterator[Any]:
         sys.unraisablehook = before
     if damage:
         raise RecordingError(f"{path} is a damaged MDF file: {damage}")
+
+
+def _master_factor(file: Any, group: int) -> float:
+    """Of the times of a group to s, in which they are unless their unit says something else."""
+    unit = file.groups[group].channels[file.masters_db[group]].unit
+    return factor(unit, "s") if unit and converts(unit, "s") else 1.0
 
 
 def _clock(start: datetime) -> Clock | None:

@@ -116,6 +116,17 @@ def test_every_version_of_mdf_is_read(tmp_path: Path, version: str) -> None:
     require_same(read_drive(path), as_read(DRIVE))
 
 
+def test_times_of_an_mdf_file_in_another_unit(tmp_path: Path) -> None:
+    from asammdf import MDF, Signal
+
+    time = 1e3 * DRIVE["Time"][0]
+    with MDF(version="4.10") as file:
+        file.append([Signal(x, time, name=name, unit=unit) for name, (x, unit) in list(DRIVE.items())[1:]])
+        file.groups[0].channels[0].unit = "ms"
+        path = file.save(tmp_path / "drive.mf4", overwrite=True)
+    require_same(read_drive(path), as_read(DRIVE))
+
+
 NO_VALUE = {
     "a text for a value": {"val_0": 65535, "text_0": b"SNA", "default_addr": {"a": 0.01, "b": 0.0}},
     "a text for a range": {"lower_0": 65534, "upper_0": 65535, "text_0": b"SNA", "default_addr": {"a": 0.01, "b": 0.0}},
