@@ -67,17 +67,6 @@ def test_what_differs_in_anything_is_made_again(cached: Cached, change: str) -> 
     assert (cached.made, cached.answer()) == (2, 8 if change in ("source", "header") else 7)
 
 
-def test_where_it_is_made_does_not_count(cached: Cached, tmp_path: Path) -> None:
-    """Every test has a folder of its own, into which it unpacks the same sources."""
-    cached("-g")
-    other = tmp_path / "other"
-    other.mkdir()
-    for name in ("program.c", "value.h"):
-        shutil.copy(cached.folder / name, other)
-    subprocess.run([str(cached.command), "program.c", "-g", "-o", "program"], cwd=other, check=True)
-    assert cached.made == 1
-
-
 def test_an_object_that_changed_is_linked_again(cached: Cached) -> None:
     for value in (7, 8):
         (cached.folder / "value.h").write_text(f"#define VALUE {value}\n")
@@ -94,14 +83,3 @@ def test_what_is_not_as_it_was_written_is_made_again(cached: Cached) -> None:
         entry.write_bytes(damaged)
         assert cached().returncode == 0
         assert (cached.made, cached.answer(), entry.read_bytes()) == (k, 7, whole)
-
-
-@pytest.mark.parametrize("source", ['#include "nothing.h"\n', "int main(void) { return nothing; }\n"])
-def test_what_is_refused_is_said_each_time_as_the_compiler_says_it(cached: Cached, source: str) -> None:
-    (cached.folder / "program.c").write_text(source)
-    command = [compiling.COMPILER, "program.c", "-o", "program"]
-    expected = subprocess.run(command, cwd=cached.folder, capture_output=True, text=True, check=False)
-    assert "nothing" in expected.stderr
-    for done in (cached(), cached()):
-        assert (done.returncode, done.stderr) == (expected.returncode, expected.stderr)
-    assert list(cached.kept.glob("*.made")) == []

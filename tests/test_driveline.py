@@ -7,7 +7,6 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from itertools import pairwise
@@ -41,21 +40,21 @@ def ran(code: str, folder: Path, **environment: str) -> str:
     return done.stdout
 
 
-def test_the_file_of_names_declares_each_once_and_nothing_else() -> None:
-    body = ast.parse(STUB.read_bytes()).body
-    assert all(isinstance(node, ast.ImportFrom) and node.level == 1 for node in body)
-    names = [alias.asname for node in body if isinstance(node, ast.ImportFrom) for alias in node.names]
-    assert len(names) == len(set(names))
-    assert all(names), "`import a as a` is what a type checker takes for public"
-
-
-def test_a_name_is_what_its_module_has() -> None:
+def test_a_name_is_what_its_module_has_and_dir_gives_them() -> None:
     for name, (module, there) in DECLARED.items():
         found = getattr(driveline, name)
         if isinstance(found, ModuleType):
             assert found is import_module(f"driveline.{module}.{there}"), name
         else:
             assert found is getattr(import_module(f"driveline.{module}"), there), name
+    assert dir(driveline) == sorted(DECLARED)
+    given: dict[str, object] = {}
+    exec("from driveline import *", given)
+    assert given.keys() - {"__builtins__"} == DECLARED.keys()
+    with pytest.raises(AttributeError, match=r"'driveline' has no attribute 'simulat'; did you mean simulate"):
+        driveline.simulat  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match=r"has no attribute 'zzz'$"):
+        driveline.zzz  # type: ignore[attr-defined]  # noqa: B018
 
 
 def docstring(name: str) -> str:
@@ -84,38 +83,14 @@ def test_a_name_has_a_docstring_of_its_own_that_speaks_of_public_names_alone() -
             assert set(re.findall(r"\bdriveline\.(\w+)", each)) <= DECLARED.keys(), name
 
 
-def code(text: str) -> Iterator[str]:
-    """The lines of a docstring that stand further in than its text, before its arguments."""
-    for block in inspect.cleandoc(text).partition("\n\nArgs:")[0].split("\n\n"):
-        if block.startswith("    "):
-            yield inspect.cleandoc(f"\n{block}")
-
-
-@pytest.mark.parametrize("name", ["simulate", "compare", "replay", "analyse", "design", "identify", "build_missing"])
-def test_what_a_function_is_for_is_shown_by_an_example(name: str) -> None:
-    (example,) = code(docstring(name))
-    assert f"driveline.{name}(" in ast.unparse(ast.parse(example))
-
-
-def test_dir_and_a_star_give_them() -> None:
-    assert dir(driveline) == sorted(DECLARED)
-    given: dict[str, object] = {}
-    exec("from driveline import *", given)
-    assert given.keys() - {"__builtins__"} == DECLARED.keys()
-
-
-def test_a_name_that_is_not_there_gives_the_nearest() -> None:
-    with pytest.raises(AttributeError, match=r"'driveline' has no attribute 'simulat'; did you mean simulate"):
-        driveline.simulat  # type: ignore[attr-defined]  # noqa: B018
-    with pytest.raises(AttributeError, match=r"has no attribute 'zzz'$"):
-        driveline.zzz  # type: ignore[attr-defined]  # noqa: B018
-
-
-def test_the_import_waits_for_nothing(tmp_path: Path) -> None:
+def test_the_import_waits_for_nothing_and_a_missing_package_is_named(tmp_path: Path) -> None:
     loaded = ran("import sys, driveline\nprint(*sys.modules)", tmp_path).split()
     assert "driveline" in loaded
     assert not {"numpy", "scipy", "casadi", "matplotlib", "fmpy", "pandas"} & set(loaded)
     assert not [name for name in loaded if name.startswith("driveline.")]
+    missing = "import sys\nsys.modules['casadi'] = None\nimport driveline\n"
+    identify = "try:\n    driveline.identify\nexcept driveline.MissingExtra as error:\n    print(error)\n"
+    assert "driveline-damping[identification]" in ran(missing + identify, tmp_path)
 
 
 def test_one_thread_at_a_time_imports_a_name(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -132,12 +107,6 @@ def test_one_thread_at_a_time_imports_a_name(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(importlib, "import_module", alone)
     with ThreadPoolExecutor() as threads:
         assert list(threads.map(driveline.__getattr__, ["Ride", "Loop", "many", "Ride"]))
-
-
-def test_a_package_that_is_missing_is_named_with_its_extra(tmp_path: Path) -> None:
-    missing = "import sys\nsys.modules['casadi'] = None\nimport driveline\n"
-    identify = "try:\n    driveline.identify\nexcept driveline.MissingExtra as error:\n    print(error)\n"
-    assert "driveline-damping[identification]" in ran(missing + identify, tmp_path)
 
 
 def test_a_script_beside_folders_of_the_same_names_runs(both_built: Path, tmp_path: Path) -> None:

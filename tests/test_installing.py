@@ -102,14 +102,13 @@ def tracked(*folders: str) -> list[str]:
     return ran("git", "ls-files", *folders, folder=ROOT).stdout.splitlines()
 
 
-def test_the_sources_are_all_there(published: Path) -> None:
+def test_sources_and_wheel_have_what_they_must_and_nothing_outside_of_the_one_package(
+    published: Path, wheel: Path
+) -> None:
     (path,) = published.glob("*.tar.gz")
     with tarfile.open(path) as archive:
         there = {name.partition("/")[2] for name in archive.getnames()}
     assert {name for name in tracked() if not name.startswith(NOT_PUBLISHED)} - there == set()
-
-
-def test_the_wheel_has_what_the_packages_have_and_nothing_outside_of_the_one_package(wheel: Path) -> None:
     with ZipFile(wheel) as archive:
         there = set(archive.namelist())
     inside = {f"driveline/{name}" for name in tracked("models", "fmus", "harness")} | set(tracked("driveline"))
@@ -132,8 +131,3 @@ def test_the_page_of_the_package_leads_to_what_is_in_the_repository(metadata: Me
     for match in found:
         assert (ROOT / match[2]).is_file(), match[2]
     assert all(ours.fullmatch(picture)[1] == "raw" for picture in pictures)  # type: ignore[index]
-
-
-def test_the_demo_needs_no_development_tools() -> None:
-    commands = ran("make", "--dry-run", "--always-make", "demo", folder=ROOT).stdout
-    assert re.findall(r"--editable '\.\[(.+)\]'", commands) == ["replay"]

@@ -1,4 +1,4 @@
-"""What pages show can be typed: commands have these options, Python names what is there, messages are said so."""
+"""What pages show can be typed: options exist, Python names what is there, and both print what they show."""
 
 import argparse
 import ast
@@ -92,38 +92,6 @@ def options(command: argparse.ArgumentParser, *path: str) -> Iterator[str]:
                 yield from options(action.choices[name], *path[1:])
 
 
-WRITING = ("replace", "plot", "figures", "window", "report", "json", "quiet", "frames", "look", "fmus")
-"""Options that do not make a run another one."""
-
-PARTS = {
-    "simulate": ("plant", "manoeuvre", "control"),
-    "record": ("plant", "control"),
-    "replay": ("recording",),
-    "faults": ("case",),
-    "robustness": ("case",),
-}
-"""What the names of the files of a run have in them; others have one name for all."""
-
-
-def test_a_command_finds_no_other_run_where_it_writes(checkout: Path) -> None:
-    """All that pages show, typed one after the other in a checkout in which `make demo` was made."""
-    there: dict[tuple[str, ...], tuple[str, dict[str, str]]] = {}
-    others = []
-    demo = "\n".join(re.findall(r"driveline (?:compare|replay) .*", text_of(ROOT / "Makefile")))
-    written = [page for page in PAGES if "\nMade by " not in text_of(page)]
-    scripts = [("Makefile", demo), *((named(page), code) for page in written for code in blocks(page, "sh"))]
-    for page, words in ((page, words) for page, script in scripts for words in commands(script)):
-        args = vars(parser().parse_args(words))
-        if args.get("output") and "replace" in args and not args.get("look"):
-            run = {name: str(value) for name, value in args.items() if name not in WRITING}
-            place = (args["program"], str(args["output"]), *(run[part] for part in PARTS.get(words[0], ())))
-            earlier, before = there.setdefault(place, (page, run))
-            if before != run and not args["replace"]:
-                others.append(f"{page}: {' '.join(words)}; as of {earlier}")
-            there[place] = page, run
-    assert not others, "\n".join(others)
-
-
 @pytest.mark.slow
 def test_the_commands_of_the_tutorial_run(both_built: Path, checkout: Path) -> None:
     for arguments in (words for script in blocks(TUTORIAL, "sh") for words in commands(script)):
@@ -131,9 +99,7 @@ def test_the_commands_of_the_tutorial_run(both_built: Path, checkout: Path) -> N
         assert arguments[0] == "build" or main([*arguments, *fmus]) == 0, shlex.join(arguments)
 
 
-def test_the_lines_of_python_of_readme_and_tutorial_print_what_they_show(
-    both_built: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_lines_of_python_of_readme_and_tutorial_print_what_they_show(both_built, capsys) -> None:
     def printed(code: str) -> str:
         exec(code.replace("simulate(tipin, ", f"simulate(tipin, folder=Path({str(both_built)!r}), "), {"Path": Path})
         return capsys.readouterr().out
@@ -158,9 +124,7 @@ FILES = {
 """What the commands of the page on messages are given."""
 
 
-def test_commands_say_what_the_page_on_messages_shows(
-    built: Path, read_here: None, checkout: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_commands_say_what_the_page_on_messages_shows(built, read_here, checkout, monkeypatch, capsys) -> None:
     for name, content in FILES.items():
         (checkout / name).write_text(content, encoding="utf-8")
     monkeypatch.setenv("COLUMNS", "80")
@@ -177,37 +141,3 @@ def answer(arguments: list[str]) -> int | str | None:
         return main(arguments)
     except SystemExit as end:
         return end.code
-
-
-LEAST = 10
-"""Characters that a message must share with the text in the code, at its places and in its order."""
-
-
-@pytest.mark.slow
-def test_messages_that_are_quoted_are_those_of_the_code_and_others_are_found_out() -> None:
-    templates = [
-        re.compile("".join(".+" if part is None else re.escape(part) for part in parts))
-        for package in ("models", "fmus", "harness")
-        for path in (ROOT / package).rglob("*.py")
-        for parts in texts(ast.parse(path.read_bytes()))
-        if sum(len(part) for part in parts if part) >= LEAST
-    ]
-
-    def is_said(message: str) -> bool:
-        message = re.sub(r"^driveline \w+: ", "", message)
-        return any(template.fullmatch(message) for template in templates)
-
-    for message in (line for block in blocks(TROUBLESHOOTING, "text") for line in block.splitlines()):
-        assert is_said(message), message
-        words = message.split()
-        assert not all(is_said(" ".join((*words[:k], "otherwise", *words[k + 1 :]))) for k in range(2, len(words)))
-
-
-def texts(tree: ast.AST) -> Iterator[list[str | None]]:
-    """Of a module, with None where they are filled in."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.JoinedStr):
-            yield [str(part.value) if isinstance(part, ast.Constant) else None for part in node.values]
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            pieces = re.split(r"%(?:s|d|g|\.\d[fg])", node.value)
-            yield [piece for k, part in enumerate(pieces) for piece in ((None, part) if k else (part,))]

@@ -76,14 +76,11 @@ def test_no_page_loads_anything_from_elsewhere_and_every_one_is_found_by_searchi
         assert not re.search(r"(url\(|@import)\s*['\"]?(https?:)?//", text_of(path)), path.name
 
 
-def test_a_page_is_what_github_shows(site: Path) -> None:
+def test_a_page_is_what_github_shows_and_its_equations_are_mathml(site: Path) -> None:
     for page in DOCS:
         github = Elements(MarkdownIt("commonmark").enable("table").render(text_of(page)))
         here = Elements(text_of((site / page.relative_to(ROOT / "docs")).with_suffix(".html")), of_text=True)
         assert "\n[table: " in text_of(page) or counted(here) == counted(github), page
-
-
-def test_equations_are_mathml(site: Path) -> None:
     for page in DOCS:
         written = text_of((site / page.relative_to(ROOT / "docs")).with_suffix(".html"))
         equations = written.count('<math xmlns="http://www.w3.org/1998/Math/MathML" display="block"')

@@ -75,18 +75,15 @@ def test_of_a_weak_excitation_what_it_does_not_tell_is_named_and_no_cause(late_o
     assert others == []
 
 
-def test_the_drive_is_that_of_the_equations_of_motion() -> None:
-    """Balance of momentum over half a second, with the mean of the torque that acted."""
+def test_the_drive_is_that_of_the_equations_of_motion_with_what_is_held() -> None:
+    # Balance of momentum over half a second, with the mean of the torque that acted.
     car, loop = CARS[0], Loop("averaged", duration=1.0)
     true = driven(car, loop, seed=1)
     first, last = 2000, 7000
     T = np.trapezoid([true["T_mot"][first : last + 1], true["T_load"][first : last + 1]], dx=FINE)
     gained = [car.J_1, car.J_2] @ np.array([true[name][last] - true[name][first] for name in ("omega_1", "omega_2")])
     assert gained == pytest.approx(T.sum(), abs=2e-3 * np.abs(T).max())
-
-
-def test_what_is_held_acts_half_a_step_early_or_late() -> None:
-    """Beside what the logger delays."""
+    # Beside what the logger delays.
     half = 0.5 * STEP * FINE
     assert Loop("averaged", late_omega=0.001, late_T_load=0.0015).shifts == pytest.approx((-0.001, 0.0005))
     assert Loop("motor first").shifts == (half, 0.0)

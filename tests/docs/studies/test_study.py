@@ -41,12 +41,9 @@ def table(**rows: float) -> Table:
     return Table("run", (MS,), {name: (value,) for name, value in rows.items()})
 
 
-def test_what_has_moved_is_named_with_row_was_is_and_tolerance() -> None:
+def test_what_has_moved_is_named_with_row_was_is_and_tolerance_also_what_is_new() -> None:
     (moved,) = differences({"runs": table(tipin=70.0, launch=120.0)}, {"runs": table(tipin=80.0)})
     assert str(moved) == "runs, tipin, settling: was 70, is 80, tolerance 2 %, at least 0.5 ms"
-
-
-def test_a_new_row_and_a_new_column_are_differences() -> None:
     (row,) = differences({"runs": table(tipin=70.0)}, {"runs": table(creep=70.0)})
     assert (row.row, row.was) == ("creep", "no such row")
     other = table(tipin=70.0)._replace(columns=(MS._replace(name="delay"),))

@@ -38,9 +38,7 @@ def found() -> Analysis:
 
 
 @pytest.mark.slow
-def test_tables_and_figures_are_written_and_limit_cycles_are_told(
-    found: Analysis, tmp_path: Path, capsys: Capsys
-) -> None:
+def test_tables_and_figures_are_written_and_limit_cycles_are_told(found, tmp_path, capsys) -> None:
     files = write(found, tmp_path)
     assert all(file.is_file() for file in files)
     assert (tmp_path / "margins.csv").read_text(encoding="utf-8").splitlines()[1].startswith(f"{PLANT},15,")
@@ -55,17 +53,14 @@ def test_the_document_has_nothing_that_json_does_not_know(found: Analysis) -> No
     assert document["estimates"][0]["bias"] is None
 
 
-def test_a_loop_that_is_not_stable_has_no_margins() -> None:
-    stable, unstable = ({PLANT: {"controller.k_v": k_v, "controller.omega_v": 25.0}} for k_v in (4.0, 5.0))
-    assert linear_part(Part(PLANT, "15"), "SpeedWashout", stable).margins.gain_margin > 1.0
-    with pytest.raises(DrivelineError, match=r"SpeedWashout is not stable in contact at 15 km/h: it has no margins"):
-        linear_part(Part(PLANT, "15"), "SpeedWashout", unstable)
-
-
-def test_a_vehicle_file_that_is_wrong_is_answered_with_its_line(tmp_path: Path, capsys: Capsys) -> None:
+def test_a_wrong_vehicle_file_and_a_loop_that_is_not_stable_are_said(tmp_path: Path, capsys: Capsys) -> None:
     car = tmp_path / "car.toml"
     car.write_text("C = -3.0\n", encoding="utf-8")
     assert main(["analyse", "--vehicle", str(car), "--output", str(tmp_path / "results")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert re.search(r"car\.toml, line 1: C = -3: .* takes 1 to 100000 N\.m/rad", line)
     assert not (tmp_path / "results").exists()
+    stable, unstable = ({PLANT: {"controller.k_v": k_v, "controller.omega_v": 25.0}} for k_v in (4.0, 5.0))
+    assert linear_part(Part(PLANT, "15"), "SpeedWashout", stable).margins.gain_margin > 1.0
+    with pytest.raises(DrivelineError, match=r"SpeedWashout is not stable in contact at 15 km/h: it has no margins"):
+        linear_part(Part(PLANT, "15"), "SpeedWashout", unstable)

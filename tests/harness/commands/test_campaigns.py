@@ -142,9 +142,7 @@ def test_a_campaign_of_other_settings_is_not_continued_unless_it_is_to_be_replac
 
 
 @pytest.mark.slow
-def test_the_folder_of_robustness_gets_the_runs_and_the_figures(
-    robustness: Command, tmp_path: Path, capsys: Capsys
-) -> None:
+def test_the_folder_of_robustness_gets_the_runs_and_the_figures(robustness, tmp_path, capsys) -> None:
     assert robustness("--cases", "2", *ALL) == 0
     folder, message = tmp_path / "results", capsys.readouterr().out
     names = {"runs.csv", "draws.csv", "summary.csv", "robustness.json", "figures"}
@@ -172,9 +170,7 @@ def test_one_draw_again_is_the_one_of_the_campaign(robustness: Command, tmp_path
 
 
 @pytest.mark.slow
-def test_a_file_of_parameters_is_for_the_controllers_that_have_them(
-    robustness: Command, tmp_path: Path, capsys: Capsys
-) -> None:
+def test_a_file_of_parameters_is_for_the_controllers_that_have_them(robustness, tmp_path, capsys) -> None:
     def settling(*more: str) -> dict[str, float]:
         assert robustness("--case", "1", *ALL, "--json", "--replace", *more) == 0
         found = json.loads(capsys.readouterr().out)["summaries"]
@@ -198,9 +194,7 @@ def test_a_scheduler_that_is_not_there_is_one_line(robustness: Command, capsys: 
 
 
 @pytest.mark.slow
-def test_the_folder_of_a_search_gets_gains_candidates_and_figures(
-    search: Command, tmp_path: Path, capsys: Capsys
-) -> None:
+def test_the_folder_of_a_search_gets_gains_candidates_and_figures(search, tmp_path, capsys) -> None:
     folder = tmp_path / "search"
     assert search() == 0
     files = {path.name for path in folder.iterdir()}

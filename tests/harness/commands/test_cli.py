@@ -64,6 +64,7 @@ def test_help_has_the_commands_by_what_they_are_for_and_the_exit_codes(capsys):
         }
         assert {title: listed[title] for title in PURPOSES} == {title: set(names) for title, names in PURPOSES.items()}
         assert "0 done, 1 something went wrong or there are findings, 2 wrong use" in out
+    assert answer(capsys, "--version")[:2] == (0, f"driveline-damping {version('driveline-damping')}\n")
 
 
 def test_what_experts_need_stands_in_help_all_alone(capsys):
@@ -74,18 +75,6 @@ def test_what_experts_need_stands_in_help_all_alone(capsys):
         assert f"  {option}" not in first + out
     assert "--manoeuvre" in first
     assert first.startswith("usage: driveline simulate [OPTION ...]\n")
-
-
-def test_a_record_without_words_is_that_of_a_program():
-    """So that nothing is usual in one and not in the other."""
-    for command, words in {"replay": ["trip.csv"], "check": ["a.fmu"], "identify": ["a.csv"]}.items():
-        module = import_module(f"driveline.harness.commands.{command}")
-        positional = {"fmus": (Path("a.fmu"),)} if command == "check" else {"recording": Path(words[0])}
-        assert given(command, *words) == module.Arguments(**positional)
-    for command in COMMANDS.keys() - {"target", "replay", "check", "identify"}:
-        assert given(command) == import_module(f"driveline.harness.commands.{command}").Arguments()
-    for action, (record, *_) in ACTIONS.items():
-        assert given("target", action) == record()
 
 
 @pytest.mark.parametrize("command", ["simulate", "compare", "ssp"])
@@ -124,10 +113,6 @@ def test_an_argument_that_is_no_printable_line_is_shown_in_one_and_refused(capsy
 @pytest.mark.parametrize("name", ["Fahrt 1 ä [km/h].csv", "走行\u3000.csv", "a\tb.csv"])
 def test_all_that_can_be_printed_may_be_an_argument(capsys, name):
     assert answer(capsys, "replay", name) == (2, "", f"driveline replay: there is no recording {name}\n")
-
-
-def test_the_version_is_that_of_the_package(capsys):
-    assert answer(capsys, "--version")[:2] == (0, f"driveline-damping {version('driveline-damping')}\n")
 
 
 @pytest.mark.parametrize(
@@ -223,12 +208,21 @@ def test_an_option_with_one_value_is_not_given_two(capsys, command, option, valu
     )
 
 
-def test_options_that_are_repeatable_keep_all_values_and_the_same_value_twice_is_one():
+def test_what_is_repeatable_keeps_all_values_and_a_record_without_words_is_that_of_a_program():
     words = ["--controller", "SpeedWashout", "--controller", "PaperObserver", "--seed", "1", "--seed", "1"]
     args = given("replay", "trip.csv", *words, "--set", "can.tau=0.1", "--set", "plant.J_1=0.06")
     assert args.controller == ("SpeedWashout", "PaperObserver")
     assert args.set == (("can.tau", 0.1), ("plant.J_1", 0.06))
     assert args.seed == 1
+    # So that nothing is usual in one and not in the other.
+    for command, words in {"replay": ["trip.csv"], "check": ["a.fmu"], "identify": ["a.csv"]}.items():
+        module = import_module(f"driveline.harness.commands.{command}")
+        positional = {"fmus": (Path("a.fmu"),)} if command == "check" else {"recording": Path(words[0])}
+        assert given(command, *words) == module.Arguments(**positional)
+    for command in COMMANDS.keys() - {"target", "replay", "check", "identify"}:
+        assert given(command) == import_module(f"driveline.harness.commands.{command}").Arguments()
+    for action, (record, *_) in ACTIONS.items():
+        assert given("target", action) == record()
 
 
 @pytest.mark.parametrize(
@@ -402,10 +396,14 @@ def test_a_parameter_beyond_its_bounds_is_named_before_anything_runs(simulate, g
     assert not folder.exists()
 
 
-def test_a_run_that_does_not_fit_in_memory_is_refused_in_one_line(simulate):
+def test_what_memory_does_not_hold_and_what_the_system_refuses_is_one_line(simulate, capsys, tmp_path):
     (code, _, err), _ = simulate("--step", "1e-15")
     assert code == 1
     assert err.startswith("driveline simulate: not enough memory")
+    pipe = tmp_path / "gains.toml"
+    os.mkfifo(pipe)
+    message = f"driveline design: {pipe}: it is a pipe that nobody reads\n"
+    assert answer(capsys, "design", "--output", str(pipe)) == (1, "", message)
 
 
 @pytest.mark.parametrize(
@@ -432,13 +430,6 @@ def test_compare_as_a_document_has_every_metric_of_every_run(capsys, both_built,
     assert document["files"] == [str(tmp_path / name) for name in ("table.md", "metrics.csv", *drawn)]
     # without gain only what it does in the gap and with the estimated torque is left
     assert 0.0 < on["added_torque_rms_N_m"] < 20.0
-
-
-def test_what_the_system_refuses_is_one_line_of_words(capsys, tmp_path):
-    pipe = tmp_path / "gains.toml"
-    os.mkfifo(pipe)
-    message = f"driveline design: {pipe}: it is a pipe that nobody reads\n"
-    assert answer(capsys, "design", "--output", str(pipe)) == (1, "", message)
 
 
 def test_check_tells_findings_by_its_exit_code_in_every_form(capsys, tmp_path):

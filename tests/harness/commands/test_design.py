@@ -1,10 +1,13 @@
-"""`driveline design`: gains for a car, printed or written."""
+"""`driveline design`, `car` and `target export`: gains for a car, what its file makes of it, its controller in C."""
 
+import json
 import tomllib
+from errno import ENOSPC
 from pathlib import Path
 
 import pytest
 
+from driveline.fmus.building.car_entries import template
 from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
 from driveline.harness.commands.cli import main
 from driveline.harness.design.design import design
@@ -54,9 +57,7 @@ def test_a_limit_may_be_small_but_not_zero(name: str, tmp_path: Path, capsys: Ca
     assert capsys.readouterr().err == f"driveline design: {limits}: {name} = 0: a limit must be above 0 N.m\n"
 
 
-def test_nothing_depends_on_the_working_directory(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
-) -> None:
+def test_nothing_depends_on_the_working_directory(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["design"]) == 0
     stored = (ROOT / "models" / "controller" / "gains.toml").read_text(encoding="utf-8")
@@ -72,9 +73,7 @@ def test_nothing_depends_on_the_working_directory(
         ("tau = 0.06\n", "the motor is too slow for this car (tau = 0.06 s, drive train 7.46 Hz): the damping ratio"),
     ],
 )
-def test_a_car_without_a_controller_is_answered_with_exit_code_2(
-    tmp_path: Path, capsys: Capsys, text: str, message: str
-) -> None:
+def test_a_car_without_a_controller_is_answered_with_exit_code_2(tmp_path, capsys, text, message) -> None:
     car, gains = tmp_path / "car.toml", tmp_path / "gains.toml"
     car.write_text(text, encoding="utf-8")
     assert main(["design", "--vehicle", str(car), "--output", str(gains)]) == 2
@@ -92,3 +91,118 @@ def test_gains_of_another_car_are_not_replaced_unasked(tmp_path: Path, capsys: C
     assert path.read_bytes() == before
     assert main(["design", "--output", str(path), "--replace"]) == 0
     assert path.read_bytes() != before
+
+
+EXPORT = ("target", "export", "--quiet")
+
+
+def exported(folder: Path, *options: str) -> int:
+    return main([*EXPORT, "--output", str(folder), *options])
+
+
+def test_on_a_full_disk_it_writes_all_files_or_none(tmp_path, monkeypatch, capsys) -> None:
+    write_text = Path.write_text
+
+    def full(path: Path, text: str, **given: str) -> int:
+        if ".c." in path.name:
+            raise OSError(ENOSPC, "No space left on device")
+        return write_text(path, text, **given)
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert exported(tmp_path) == 1
+    source = tmp_path / "damping_controller.c"
+    assert capsys.readouterr().err == f"driveline target export: {source}: No space left on device\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_it_writes_headers_and_source_with_the_car_and_its_gains(tmp_path: Path) -> None:
+    gains = tmp_path / "gains.toml"
+    gains.write_text("k_d = 4.0\n", encoding="utf-8")
+    assert exported(tmp_path / "c", "--vehicle", str(VAN), "--parameters", str(gains)) == 0
+    files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "c").iterdir()}
+    assert sorted(files) == ["controller.h", "damping_controller.c", "damping_controller.h"]
+    assert not any("double" in text for text in files.values())
+    for line in (".k_d = 4.0f,", ".T_max = 250.0f,", ".phi_B = 0.314f,", ".omega_w = 3.0f,"):
+        assert line in files["damping_controller.c"]
+
+
+@pytest.mark.parametrize(
+    ("entry", "controller", "message"),
+    [
+        ("J_1 = 0.05", "DampingController", "line 1: J_1 does not belong here"),
+        ("k_d = 1e9", "DampingController", "k_d = 1e+09"),
+        ("k_gap = 0.5", "SpeedWashout", "SpeedWashout has no parameter k_gap"),
+    ],
+)
+def test_what_does_not_belong_to_the_controller_is_refused(entry, controller, message, tmp_path, capsys) -> None:
+    gains = tmp_path / "gains.toml"
+    gains.write_text(f"{entry}\n", encoding="utf-8")
+    assert exported(tmp_path / "c", "--parameters", str(gains), "--controller", controller) == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "c").exists()
+
+
+def test_the_c_of_another_controller_stays_unless_it_is_to_be_replaced(tmp_path: Path, capsys: Capsys) -> None:
+    assert exported(tmp_path) == exported(tmp_path) == 0
+    before = (tmp_path / "controller.h").read_bytes()
+    other = ("--controller", "SpeedWashout")
+    assert exported(tmp_path, *other) == 2
+    assert "controller.h is there with another content" in capsys.readouterr().err
+    assert (tmp_path / "controller.h").read_bytes() == before
+    assert not (tmp_path / "speed_washout.c").exists()
+    assert exported(tmp_path, *other, "--replace") == 0
+    assert "SpeedWashout" in (tmp_path / "controller.h").read_text(encoding="utf-8")
+
+
+def test_the_table_has_each_entry_and_what_comes_of_them(capsys: Capsys) -> None:
+    assert main(["car", str(VAN)]) == 0
+    text = capsys.readouterr().out
+    rows = {line.split()[0]: line for line in text.splitlines() if line.strip()}
+    assert "150 N.m/rad   set" in rows["C"]
+    assert "52333.7 N.m/rad   follows (C)" in rows["k_s"]
+    assert "design plant, vehicle, bus" in rows["i"]
+    assert "backlash at the wheel: 3.00 degrees" in text
+    assert "takes up to 188.378 N.m from the demand and adds up to 83.3333 N.m, of T_max = 250 N.m" in text
+    assert rows["TwoMassDriveline"].split()[1] == "6.95"
+    assert rows["ValidationVehicle"].split()[1] == "7.50"
+
+
+def test_tools_get_one_document(tmp_path: Path, capsys: Capsys) -> None:
+    gains = tmp_path / "gains.toml"
+    gains.write_text("k_d = 3.469\nT_add_max = 40\n", encoding="utf-8")
+    assert main(["car", str(VAN), "--parameters", str(gains), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    k_s = next(entry for entry in found["entries"] if entry["name"] == "k_s")
+    assert (k_s["origin"], k_s["source"], k_s["blocks"]) == ("follows", "C", ["ValidationVehicle"])
+    assert found["properties"]["added"] == 40.0
+    for plant in found["properties"]["plants"]:
+        assert plant["damping_ratio"] < 0.06 < 0.3 < plant["damped"]["damping_ratio"]
+
+
+def test_a_car_without_a_controller_has_no_damped_mode_and_contradictory_shafts_are_refused(
+    tmp_path: Path, capsys: Capsys
+) -> None:
+    car = tmp_path / "car.toml"
+    car.write_text("T_cyc = 0.2\n", encoding="utf-8")
+    assert main(["car", str(car), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["gains"].startswith("no gains: T_age would be 0.113; the controller takes")
+    assert [plant["damped"] for plant in found["properties"]["plants"]] == [None, None]
+    car = tmp_path / "car.toml"
+    car.write_text("C = 220.0\nk_s = 25800.0\n", encoding="utf-8")
+    assert main(["car", str(car)]) == 2
+    assert capsys.readouterr().err == (
+        f"driveline car: {car}: C = 220 N.m/rad and k_s = 25800 N.m/rad disagree: with that C would be 117.4 N.m/rad; "
+        "leave one of them out, and it follows\n"
+    )
+
+
+def test_the_template_is_printed_or_written_and_no_other_file_is_replaced(tmp_path: Path, capsys: Capsys) -> None:
+    assert main(["car", "--template"]) == 0
+    assert capsys.readouterr().out == template()
+    path = tmp_path / "car.toml"
+    assert main(["car", "--template", "--output", str(path)]) == 0
+    assert path.read_text(encoding="utf-8") == template()
+    path.write_text("mine", encoding="utf-8")
+    assert main(["car", "--template", "--output", str(path)]) != 0
+    assert path.read_text(encoding="utf-8") == "mine"

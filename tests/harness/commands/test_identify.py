@@ -82,18 +82,6 @@ def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_sam
     assert {name: (folder / name).read_bytes() for name in before} == before
 
 
-@pytest.mark.slow
-def test_more_parameters_can_be_freed(identify: Identify, tmp_path: Path, without_figures: None) -> None:
-    """Each once, however often it is asked for; J_1 then stands in the vehicle file."""
-    assert identify("--free", "J_1", "--free", "d", "--free", "J_1", "--quiet") == 0
-    document = found(tmp_path / "out")
-    assert sorted(document["free"]) == ["C", "J_1", "J_2", "d", "g_L", "phi_B"]
-    require_close(document, "J_1", PLANT.J_1, 2e-3)
-    entries = read_vehicle(tmp_path / "out" / "car.toml")
-    assert entries["J_1"] == pytest.approx(document["parameters"]["J_1"], rel=1e-5)
-    assert "d" not in entries
-
-
 @pytest.fixture
 def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """They are drawn in another test."""
@@ -123,35 +111,22 @@ def test_without_load_torque_and_demand_the_result_has_another_name(
 
 
 @pytest.mark.slow
-def test_the_vehicle_file_that_is_given_is_what_is_known(
-    identify: Identify, tmp_path: Path, capsys: Capsys, without_figures: None
-) -> None:
-    """Its J_1, 3 % wrong, is doubted; its other entries stay."""
+def test_the_vehicle_file_is_what_is_known_and_more_can_be_freed(identify, tmp_path, capsys, without_figures) -> None:
+    """Its J_1, 3 % wrong, is doubted; its other entries stay. What is freed twice is free once."""
     car = tmp_path / "known.toml"
     car.write_text(f"J_1 = {1.03 * PLANT.J_1}\nC = 100.0\nm = 1450.0\n", encoding="utf-8")
-    assert identify("--vehicle", str(car)) == 0
+    assert identify("--vehicle", str(car), "--free", "d", "--free", "d") == 0
     message = capsys.readouterr().out
     assert "warning: the recorded motor torque looks 0.97" in message
     assert f"or J_1 = {1.03 * PLANT.J_1:g} kg.m2 should be 0.05" in message
     entries = read_vehicle(tmp_path / "out" / "car.toml")
     assert entries.keys() == {"J_1", "C", "m", "phi_B", "tau"}
     assert (entries["J_1"], entries["m"]) == (1.03 * PLANT.J_1, 1450.0)
-
-
-def test_a_file_whose_folder_cannot_be_made_is_refused_before_the_search(
-    recording: Path, tmp_path: Path, capsys: Capsys
-) -> None:
-    (tmp_path / "file").touch()
-    assert main(["identify", str(recording), "--output", str(tmp_path / "file" / "more" / "car.toml")]) == 2
-    message = capsys.readouterr()
-    assert f"{tmp_path / 'file'} is no folder that can be written to" in message.err
-    assert "predicted" not in message.out
+    assert sorted(found(tmp_path / "out")["free"]) == ["C", "J_2", "d", "g_L", "phi_B"]
 
 
 @pytest.mark.slow
-def test_stopped_while_figures_are_drawn_it_leaves_no_vehicle_file(
-    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_stopped_while_figures_are_drawn_it_leaves_no_vehicle_file(identify, tmp_path, monkeypatch) -> None:
     def stopped(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
@@ -196,20 +171,23 @@ def test_design_writes_gains_and_both_builds_and_compares(
     assert all(of == car and settings is kept for of, settings in calls)
 
 
-def test_a_recording_that_is_too_short_is_refused_and_nothing_written(
-    recording: Path, tmp_path: Path, capsys: Capsys
+def test_a_short_recording_and_a_folder_that_cannot_be_made_are_refused_before_the_search(
+    recording, tmp_path, capsys
 ) -> None:
     path = tmp_path / "short.csv"
     path.write_text("".join(recording.read_text(encoding="utf-8").splitlines(keepends=True)[: 1 + 1251]))
     assert main(["identify", str(path), "--output", str(tmp_path / "out" / "car.toml")]) == 2
     assert "short is 2.5 s long; 2.8 s or more" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+    (tmp_path / "file").touch()
+    assert main(["identify", str(recording), "--output", str(tmp_path / "file" / "more" / "car.toml")]) == 2
+    message = capsys.readouterr()
+    assert f"{tmp_path / 'file'} is no folder that can be written to" in message.err
+    assert "predicted" not in message.out
 
 
 @pytest.mark.slow
-def test_a_car_that_is_hardly_known_is_told_but_not_written(
-    identify: Identify, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capsys
-) -> None:
+def test_a_car_that_is_hardly_known_is_told_but_not_written(identify, tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.setattr("driveline.harness.identification.car_file.WIDEST_INTERVAL", 1e-6)
     assert identify() == 2
     message = capsys.readouterr()

@@ -118,7 +118,7 @@ def test_a_window_and_the_kinds_of_figures_are_those_that_are_asked_for() -> Non
     assert Figures().options("") == FigureOptions("", None, ("png", "pdf"))
 
 
-def test_a_folder_is_no_file_and_a_file_no_folder(tmp_path: Path) -> None:
+def test_a_folder_is_no_file_a_file_no_folder_and_one_for_results_is_tried(tmp_path: Path) -> None:
     one = tmp_path / "signals.csv"
     assert [take(str(one)) for take in (folder, file)] == [one, one]
     one.touch()
@@ -126,6 +126,12 @@ def test_a_folder_is_no_file_and_a_file_no_folder(tmp_path: Path) -> None:
         with pytest.raises(ArgumentTypeError, match=reason):
             take(str(path))
     assert folder(str(tmp_path)) == tmp_path
+    assert output_folder(str(tmp_path / "new" / "results")) == tmp_path / "new" / "results"
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").touch()
+    for text in ("/proc/results", str(tmp_path / "file" / "results")):
+        with pytest.raises(ArgumentTypeError, match="cannot be written to"):
+            output_folder(text)
 
 
 @pytest.mark.parametrize("take", [folder, output_folder, file])
@@ -133,15 +139,6 @@ def test_a_name_that_is_empty_or_too_long_is_refused(take: Parse) -> None:
     for name, reason in (("a" * 5000, "^File name too long$"), ("", "is empty$")):
         with pytest.raises(ArgumentTypeError, match=reason):
             take(name)
-
-
-def test_a_folder_for_results_is_tried_and_nothing_is_left_of_it(tmp_path: Path) -> None:
-    assert output_folder(str(tmp_path / "new" / "results")) == tmp_path / "new" / "results"
-    assert list(tmp_path.iterdir()) == []
-    (tmp_path / "file").touch()
-    for text in ("/proc/results", str(tmp_path / "file" / "results")):
-        with pytest.raises(ArgumentTypeError, match="cannot be written to"):
-            output_folder(text)
 
 
 def test_other_samples_columns_names_or_frames_make_another_run(tmp_path: Path) -> None:

@@ -51,9 +51,7 @@ def test_a_folder_with_other_results_is_named(message, command: str) -> None:
         ("replay", "--held", "0.0009", "a demand that is held for 0.0009 s: it must be 0.001 s or more"),
     ],
 )
-def test_an_option_that_no_run_can_have_is_named_before_the_folder(
-    message, command: str, option: str, value: str, reason: str
-) -> None:
+def test_an_option_that_no_run_can_have_is_named_before_the_folder(message, command, option, value, reason) -> None:
     (line,) = message(command, option, value).splitlines()
     assert line.startswith(f"driveline {command}: {reason}")
 

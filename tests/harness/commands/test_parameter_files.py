@@ -1,7 +1,5 @@
 """A car and its gains on the command line: where the entries of the files go, and what is refused."""
 
-from pathlib import Path
-
 import pytest
 
 from driveline.fmus.errors import ParameterFileError
@@ -10,7 +8,6 @@ from driveline.harness.commands.cli import main
 from driveline.harness.commands.settings import settings
 from tests import ROOT
 from tests.foreign import build_car
-from tests.harness.commands import Capsys
 from tests.harness.commands import given as record
 
 VAN = str(ROOT / "examples" / "cars" / "van.toml")
@@ -51,12 +48,9 @@ def test_the_entries_reach_every_block_that_has_them_unless_they_are_set(given, 
     assert given("--set", "plant.i=10") == {"plant.i": 10.0}
 
 
-def test_a_refused_file_is_answered_with_its_line(given, gains):
+def test_a_file_of_a_car_with_gains_or_for_another_controller_is_refused(given, gains, tmp_path):
     with pytest.raises(ParameterFileError, match=r"gains\.toml, line 1: k_d does not belong here"):
         given("--vehicle", gains)
-
-
-def test_a_file_for_another_controller_is_refused(given, gains, tmp_path):
     assert main(["build", "NoDamping", "--build", "python", "--output", str(tmp_path), "--quiet"]) == 0
     controller = str(tmp_path / "NoDamping.fmu")
     with pytest.raises(DrivelineError, match=r"gains\.toml: NoDamping\.fmu has no parameter k_d$"):
@@ -109,9 +103,7 @@ def test_every_command_that_runs_or_builds_the_loop_takes_both_files(command, ga
 
 
 @pytest.mark.slow
-def test_what_a_vehicle_file_does_not_reach_is_said(
-    both_built: Path, tmp_path: Path, capsys: Capsys, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_what_a_vehicle_file_does_not_reach_is_said(both_built, tmp_path, capsys, caplog) -> None:
     """Somebody else's plant without J_1, whatever its name, keeps its own, while the controller's model takes that of
     the file."""
     car, gains = tmp_path / "car.toml", tmp_path / "gains.toml"

@@ -142,15 +142,12 @@ def test_a_description_that_cannot_be_used_is_named(stranger, tmp_path, old, new
     assert str(error.value).isprintable()
 
 
-def test_a_document_type_is_found_in_any_encoding(tmp_path):
+def test_a_document_type_is_found_in_any_encoding_and_a_description_must_be_there(tmp_path):
     xml = '<?xml version="1.0" encoding="UTF-16"?><!DOCTYPE x [<!ENTITY y "z">]><fmiModelDescription guid="&y;"/>'
     with ZipFile(tmp_path / "faulty.fmu", "w") as archive:
         archive.writestr("modelDescription.xml", xml.encode("utf-16"))
     with pytest.raises(WiringError, match="declares a document type"):
         Interface(tmp_path / "faulty.fmu")
-
-
-def test_an_archive_without_a_description_is_none(tmp_path):
     with ZipFile(tmp_path / "empty.fmu", "w") as archive:
         archive.writestr("something.txt", "")
     with pytest.raises(WiringError, match=r"there is no modelDescription\.xml in it"):

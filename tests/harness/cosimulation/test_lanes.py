@@ -137,7 +137,7 @@ def test_a_car_that_is_refused_something_is_given_up_and_the_others_go_on(lanes)
     assert torques_apart(again, first) == 0.0
 
 
-def test_a_run_that_changes_a_parameter_goes_alone(lanes):
+def test_a_run_that_changes_a_parameter_or_whose_rows_are_in_a_file_goes_alone(lanes, monkeypatch):
     alone, in_lanes = lanes
     constant = car(1)
     changed, never = (
@@ -148,9 +148,6 @@ def test_a_run_that_changes_a_parameter_goes_alone(lanes):
     assert isinstance(refused, WiringError)
     assert torques_apart(first, alone.run(constant)) < TOLERANCE
     assert in_lanes.run(alone, [changed, changed]) == [None, None]
-
-
-def test_a_run_whose_rows_are_in_a_file_goes_alone(lanes, monkeypatch):
     alone, in_lanes = lanes
     size = alone.run(car(0)).nbytes
     for most, alike in ((size - 1, False), (size, True)):

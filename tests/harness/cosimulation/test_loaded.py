@@ -67,16 +67,13 @@ def test_a_loop_whose_run_was_refused_stays_usable(both_built):
         np.testing.assert_array_equal(drive(running), fresh)
 
 
-def test_inputs_of_the_run_before_are_forgotten(relay):
-    """And those that are the same as before are set again: reset has put them back to their start."""
+def test_each_run_has_its_own_inputs_and_results(relay):
+    # And those that are the same as before are set again: reset has put them back to their start.
     with loaded(System({"a": relay})) as running:
         for inputs, expected in (({"a.u": 5.0}, 5.0), ({"a.u": 5.0}, 5.0), ({}, 0.0), ({"a.u": 5.0, "a.n": 1}, 5.0)):
             results = running.run(Experiment(0.01, inputs=inputs))
             assert (results["a.y"][1:] == expected).all()
             assert ("a.u" in (results.dtype.names or ())) == ("a.u" in inputs)
-
-
-def test_each_run_has_its_own_results(relay):
     with loaded(System({"a": relay})) as running:
         first = running.run(Experiment(0.01, inputs={"a.u": 1.0}))
         running.run(Experiment(0.01, inputs={"a.u": 2.0}))
@@ -92,7 +89,7 @@ def test_what_an_integer_does_not_hold_is_refused(relay, value):
             running.run(Experiment(0.01, parameters={"a.count": value}))
 
 
-def test_a_message_is_about_the_run_that_was_refused(relay):
+def test_fatal_and_refusals_are_told_of_the_run_that_they_were_in(relay):
     with loaded(System({"a": relay})) as running:
         with pytest.raises(WiringError, match=r"a\.count = 0\.5: it must be a whole number"):
             running.run(Experiment(0.01, parameters={"a.count": 0.5}))
@@ -100,9 +97,6 @@ def test_a_message_is_about_the_run_that_was_refused(relay):
         with pytest.raises(SimulationError) as refusal:
             running.run(Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
     assert str(refusal.value).count("is beyond") == 1
-
-
-def test_a_loop_that_has_ended_with_fatal_says_that_it_must_be_loaded_anew(relay):
     system = System({"a": relay, "b": relay}, (Connection("a.y", "b.u"),))
     with loaded(system) as running:
         with pytest.raises(SimulationError, match="with fatal"):
@@ -198,7 +192,7 @@ def test_only_the_last_ones_are_kept(relay, unpacked):
         assert first in files(unpacked)
 
 
-def test_one_that_has_ended_with_fatal_is_loaded_anew(relay, unpacked):
+def test_errors_are_told_in_every_run_and_unload_or_load_anew(relay, unpacked):
     system = System({"a": relay})
     with kept_loaded():
         gains(system, 1.0)
@@ -206,17 +200,11 @@ def test_one_that_has_ended_with_fatal_is_loaded_anew(relay, unpacked):
             run(system, Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
         assert gains(system, 7.0) == [7.0]
         assert len(files(unpacked)) == 1
-
-
-def test_what_is_wrong_is_told_in_every_run(relay):
     with kept_loaded():
         for _ in range(2):
             with pytest.raises(WiringError, match="no parameter gian; did you mean gain"):
                 run(System({"a": relay}), Experiment(0.01, parameters={"a.gian": 1.0}))
             gains(System({"a": relay}), 1.0)
-
-
-def test_an_error_within_unloads_too(relay, unpacked):
     with pytest.raises(SimulationError), kept_loaded():
         run(System({"a": relay}), Experiment(0.01, inputs={"a.u": 3.0}, parameters={"a.limit": 2.0}))
     assert files(unpacked) == []

@@ -77,16 +77,17 @@ def test_a_mapped_variable_without_a_unit_is_said(both_built, theirs, caplog):
     assert caplog.messages == [text]
 
 
-def test_nothing_changes_where_names_and_units_are_the_same(both_built):
+def test_names_may_be_the_same_or_swapped_and_one_output_two_things(both_built, plain, tmp_path):
     ours = both_built / f"{PLANTS[0]}.fmu"
     mapping = {f"plant.{name}": name for name in ("T_mot", "T_gear", "omega_1", "v_0")}
     np.testing.assert_array_equal(
         simulate(TIPIN, ours, folder=both_built, mapping=mapping), simulate(TIPIN, ours, folder=both_built)
     )
-
-
-def test_one_output_may_be_two_things(both_built, tmp_path):
-    """A car with one wheel speed."""
+    swapped = {"plant.omega_1": "omega_2", "plant.omega_2": "omega_1"}
+    row = simulate(TIPIN, plain, folder=both_built, mapping=swapped)[-1]
+    assert row["plant.omega_wheel_L"] * 9.0 == pytest.approx(row["plant.omega_1"], rel=1e-12)
+    assert row["plant.omega_2"] != row["plant.omega_1"]
+    # A car with one wheel speed.
     one = {"omega_wheel_L": ("wheel", "rad/s", 1.0), "omega_wheel_R": ("other", "rad/s", 1.0)}
     plant = build_car(tmp_path / "car", **one)
     mapping = {"plant.omega_wheel_L": "wheel", "plant.omega_wheel_R": "wheel"}
@@ -94,13 +95,6 @@ def test_one_output_may_be_two_things(both_built, tmp_path):
     np.testing.assert_array_equal(results["plant.omega_wheel_R"], results["plant.omega_wheel_L"])
     assert results["plant.omega_wheel_R"][-1] > 1.0
     assert "plant.wheel" not in (results.dtype.names or ())
-
-
-def test_what_the_fmu_itself_calls_by_that_name_is_hidden(both_built, plain):
-    swapped = {"plant.omega_1": "omega_2", "plant.omega_2": "omega_1"}
-    row = simulate(TIPIN, plain, folder=both_built, mapping=swapped)[-1]
-    assert row["plant.omega_wheel_L"] * 9.0 == pytest.approx(row["plant.omega_1"], rel=1e-12)
-    assert row["plant.omega_2"] != row["plant.omega_1"]
 
 
 @pytest.mark.parametrize(
@@ -116,12 +110,6 @@ def test_what_the_fmu_itself_calls_by_that_name_is_hidden(both_built, plain):
 def test_a_mapping_that_does_not_fit_is_refused(both_built, theirs, mapping, complaint):
     with pytest.raises(WiringError, match=complaint):
         simulate(TIPIN, theirs, folder=both_built, mapping=MAPPING | mapping)
-
-
-def test_an_unknown_unit_is_named(both_built, tmp_path):
-    plant = build_car(tmp_path / "car", T_gear=("Shaft.tau", "blub", 1.0))
-    with pytest.raises(WiringError, match=r"plant\.T_gear=Shaft\.tau: .* is in 'blub', which is not a known unit"):
-        simulate(TIPIN, plant, folder=both_built, mapping={"plant.T_gear": "Shaft.tau"})
 
 
 def test_all_that_does_not_fit_is_named_at_once_and_each_once(both_built, theirs):
@@ -144,22 +132,25 @@ def test_a_unit_that_differs_is_converted(both_built, plain, tmp_path, unit):
         assert first["plant.omega_1"] == pytest.approx(first["plant.omega_2"] * one, rel=1e-12)
 
 
-def test_a_mapping_is_read_from_text():
+def test_an_unknown_unit_is_named(both_built, tmp_path):
+    plant = build_car(tmp_path / "car", T_gear=("Shaft.tau", "blub", 1.0))
+    with pytest.raises(WiringError, match=r"plant\.T_gear=Shaft\.tau: .* is in 'blub', which is not a known unit"):
+        simulate(TIPIN, plant, folder=both_built, mapping={"plant.T_gear": "Shaft.tau"})
+
+
+def test_a_mapping_is_read_from_text_one_variable_a_name():
     assert parsed(["plant.T_gear=Shaft.tau", " plant.v_0 = Car.v.start "]) == {
         "plant.T_gear": "Shaft.tau",
         "plant.v_0": "Car.v.start",
     }
     assert parsed(["plant.T_gear=a=b"]) == {"plant.T_gear": "a=b"}
     assert parsed([]) == {}
+    assert parsed(["plant.v=a", "plant.v=a"]) == {"plant.v": "a"}
+    with pytest.raises(WiringError, match=r"plant\.v cannot be both a and b"):
+        parsed(["plant.v=a", "plant.v=b"])
 
 
 @pytest.mark.parametrize("text", ["plant.T_gear", "T_gear=Shaft.tau", "plant.=x", ".T_gear=x", "plant.T_gear=", "=x"])
 def test_another_form_of_mapping_is_refused(text):
     with pytest.raises(WiringError, match=r"is not of the form plant\.T_gear=Shaft\.tau"):
         parsed([text])
-
-
-def test_a_name_of_the_loop_stands_for_one_variable():
-    assert parsed(["plant.v=a", "plant.v=a"]) == {"plant.v": "a"}
-    with pytest.raises(WiringError, match=r"plant\.v cannot be both a and b"):
-        parsed(["plant.v=a", "plant.v=b"])

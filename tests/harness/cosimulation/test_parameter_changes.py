@@ -70,17 +70,14 @@ def test_changes_come_in_the_order_of_time_and_others_are_set_before_the_start()
     assert initial(given) == {"a.gain": 1.0}
 
 
-def test_nothing_is_different_before_the_sample_after_the_change(native: Path) -> None:
+def test_nothing_is_different_before_the_sample_after_the_change_which_may_be_the_start(native: Path) -> None:
     usual = simulate(TIPIN, folder=native.parent, build="native")
     turned = simulate(TIPIN, folder=native.parent, build="native", parameters={"controller.k_d@1.05": 1.5})
     differs = np.flatnonzero(turned["controller.T_ref"] != usual["controller.T_ref"])
     assert usual["time"][differs[0]] == pytest.approx(1.052)
     assert np.array_equal(turned[: differs[0]], usual[: differs[0]])
     assert 20.0 < abs(turned["controller.T_ref"] - usual["controller.T_ref"])[differs[0]] < 25.0
-
-
-def test_a_change_at_the_start_is_that_of_the_parameter(native: Path) -> None:
-    """The controller is stationary at the start, whatever its gain."""
+    # The controller is stationary at the start, whatever its gain.
     at_start, given = (
         simulate(TIPIN, folder=native.parent, build="native", parameters={name: 1.5})
         for name in ("controller.k_d@0", "controller.k_d")
@@ -116,9 +113,7 @@ def test_compiled_steps_and_those_in_python_make_the_same_changes(both_built: Pa
     assert gained[220] > gained[40]
 
 
-def test_both_builds_and_fmi_3_are_back_to_back_at_zero_with_turned_parameters(
-    both_built: Path, fmi3_as_native: Path
-) -> None:
+def test_both_builds_and_fmi_3_are_back_to_back_at_zero_with_turned_parameters(both_built, fmi3_as_native) -> None:
     """Sampled and continuous blocks; inputs are held, as the Python build does it."""
     runs = [
         simulate(
@@ -157,9 +152,7 @@ def test_in_a_process_of_its_own_the_run_is_the_same(native: Path) -> None:
         ({"can.seed@1": 2}, r"can\.seed@1: in WheelSpeedCan\.fmu seed is fixed"),
     ],
 )
-def test_what_cannot_be_changed_is_named_before_the_run(
-    native: Path, parameters: dict[str, float], message: str
-) -> None:
+def test_what_cannot_be_changed_is_named_before_the_run(native, parameters, message) -> None:
     with pytest.raises(WiringError, match=message):
         simulate(TIPIN, folder=native.parent, build="native", parameters=parameters)
 

@@ -38,19 +38,13 @@ def same(found: Results, expected: Results) -> bool:
     return type(found) is Results and found.units == expected.units and np.array_equal(found, expected)
 
 
-def test_a_run_knows_the_units_of_inputs_and_outputs(results: Results) -> None:
+def test_a_run_its_rows_and_columns_know_their_units(results: Results) -> None:
     assert UNITS.items() <= results.units.items()
     assert "can.counter" not in results.units
-
-
-def test_rows_and_columns_of_a_run_know_them_too(results: Results) -> None:
     columns = ["time", "plant.T_gear"]
     for piece in (results[::2], results[results["time"] > 0.1], results[columns], repack_fields(results[columns])):
         assert type(piece) is Results
         assert piece.units == results.units
-
-
-def test_one_column_is_an_ordinary_array_of_the_same_memory(results: Results) -> None:
     torque = results["plant.T_gear"]
     assert type(torque) is np.ndarray
     assert np.shares_memory(torque, results)
@@ -69,7 +63,9 @@ def test_runs_of_other_processes_know_them(results: Results, native: Path) -> No
     assert same(apart, results)
 
 
-def test_a_frame_has_the_signals_over_the_time_with_their_units(results: Results) -> None:
+def test_a_frame_has_the_signals_over_the_time_with_their_units_and_is_no_view(
+    results: Results, tmp_path: Path
+) -> None:
     frame = results.to_pandas()
     assert frame.attrs["units"] == results.units
     np.testing.assert_array_equal(frame.index, results["time"])
@@ -78,19 +74,10 @@ def test_a_frame_has_the_signals_over_the_time_with_their_units(results: Results
     for name in frame:
         np.testing.assert_array_equal(frame[name], results[name])
         assert frame[name].dtype == results.dtype[name]
-
-
-def test_a_frame_has_the_units_of_its_own_columns_alone(results: Results) -> None:
     assert results[["time", "plant.T_gear"]].to_pandas().attrs["units"] == {"time": "s", "plant.T_gear": "N.m"}
-
-
-def test_a_frame_is_no_view_of_the_run(results: Results) -> None:
     frame, before = results.to_pandas(), results["plant.T_gear"].copy()
     frame["plant.T_gear"] += 1.0
     np.testing.assert_array_equal(results["plant.T_gear"], before)
-
-
-def test_what_pandas_reads_from_a_parquet_file_is_the_frame(results: Results, tmp_path: Path) -> None:
     read = pd.read_parquet(write_signals(results, tmp_path / "run", "parquet"))
     assert read.attrs == results.to_pandas().attrs
     pd.testing.assert_frame_equal(read.set_index("time"), results.to_pandas())

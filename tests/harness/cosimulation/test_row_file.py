@@ -57,12 +57,20 @@ def test_a_run_in_a_file_is_the_same(native: Path, in_files: None, tmp_path: Pat
     assert len({figure.read_bytes() for figures in drawn for figure in figures}) == len(drawn[0])
 
 
-def test_a_column_of_a_run_in_a_file_is_a_copy_and_says_so(native: Path, in_files: None) -> None:
+def test_a_column_of_a_run_in_a_file_is_a_copy_that_takes_its_own_memory_alone(native: Path, in_files: None) -> None:
     run = simulate(TIPIN, folder=native.parent)
     with pytest.raises(ValueError, match="read-only"):
         run["plant.T_gear"][0] = 1.0
     run["plant.T_gear"] = 1.0
     assert (run["plant.T_gear"] == 1.0).all()
+    rows, file = zeros(10_000, np.dtype([(f"x{k}", float) for k in range(20)]))
+    run = Results(rows, {}, file)
+    tracemalloc.start()
+    try:
+        column = run["x3"]
+        assert tracemalloc.get_traced_memory()[1] < 1.2 * column.nbytes
+    finally:
+        tracemalloc.stop()
 
 
 def test_what_has_been_read_or_written_is_given_back(monkeypatch: pytest.MonkeyPatch, in_files: None) -> None:
@@ -83,17 +91,6 @@ def test_what_has_been_read_or_written_is_given_back(monkeypatch: pytest.MonkeyP
     assert len(given_back) == 4, "once in 16 KiB"
     np.testing.assert_array_equal(run["b"], np.arange(4096.0))
     assert len(given_back) == 8
-
-
-def test_a_column_takes_no_memory_but_its_own(in_files: None) -> None:
-    rows, file = zeros(10_000, np.dtype([(f"x{k}", float) for k in range(20)]))
-    run = Results(rows, {}, file)
-    tracemalloc.start()
-    try:
-        column = run["x3"]
-        assert tracemalloc.get_traced_memory()[1] < 1.2 * column.nbytes
-    finally:
-        tracemalloc.stop()
 
 
 def test_nothing_of_a_file_can_be_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,8 +29,12 @@ def how(system):
     return transfers(fitted.system, fitted.interfaces)
 
 
-def test_the_speed_is_measured_at_the_instant_at_which_the_plant_shows_it(native):
-    """The motor passes omega_1 on within the instant: it is read again after the plant."""
+def test_every_output_is_read_once_with_the_inputs_of_its_instant_and_the_speed_after_the_plant(native):
+    plan = planned(loop(folder=native.parent, build="native"))
+    read = [f"{a.instance}.{name}" for a in (*plan.begin, *plan.end) if isinstance(a, Get) for name in a.outputs]
+    interfaces = fit(loop(folder=native.parent, build="native")).interfaces
+    assert sorted(read) == sorted(f"{i}.{v.name}" for i, f in interfaces.items() for v in f.of_causality("output"))
+    # The motor passes omega_1 on within the instant: it is read again after the plant.
     end = planned(loop(folder=native.parent, build="native")).end
     after_plant = end[
         next(n for n, action in enumerate(end) if isinstance(action, Get) and action.instance == "plant") :
@@ -38,22 +42,14 @@ def test_the_speed_is_measured_at_the_instant_at_which_the_plant_shows_it(native
     assert after_plant[1:] == [Set("motor"), Get("motor", ["omega_1_meas"])]
 
 
-def test_every_output_is_read_once_with_the_inputs_of_its_instant(native):
-    plan = planned(loop(folder=native.parent, build="native"))
-    read = [f"{a.instance}.{name}" for a in (*plan.begin, *plan.end) if isinstance(a, Get) for name in a.outputs]
-    interfaces = fit(loop(folder=native.parent, build="native")).interfaces
-    assert sorted(read) == sorted(f"{i}.{v.name}" for i, f in interfaces.items() for v in f.of_causality("output"))
-
-
-def test_native_fmus_interpolate_the_torque_and_extrapolate_the_speed(native):
+def test_native_fmus_interpolate_torque_and_extrapolate_speed_and_others_hold_both(native, built):
     system = loop(folder=native.parent, build="native")
     assert how(system) == {"plant.T_mot": Transfer.INTERPOLATED, "motor.omega_1": Transfer.EXTRAPOLATED}
     begin = planned(system).begin
     assert begin.index(Step("motor")) < begin.index(Move("plant", ["T_mot"], Transfer.INTERPOLATED))
-
-
-def test_fmus_that_run_python_hold_both(built):
     assert how(loop(folder=built, build="python")) == dict.fromkeys(("plant.T_mot", "motor.omega_1"), Transfer.HELD)
+    # T_ref is held by its nature, and the controller takes what it gets at its tick.
+    assert not how(loop(folder=native.parent, build="native")).keys() & {"motor.T_ref", "controller.omega_1_meas"}
 
 
 def test_a_loop_says_once_what_moves_and_what_is_held(built, caplog):
@@ -65,11 +61,6 @@ def test_a_loop_says_once_what_moves_and_what_is_held(built, caplog):
     assert record.getMessage() == (
         "under the propagated scheme, over a step plant.T_mot is held, motor.omega_1 is held"
     )
-
-
-def test_what_a_sampled_fmu_puts_out_or_takes_in_does_not_move(native):
-    """T_ref is held by its nature, and the controller takes what it gets at its tick."""
-    assert not how(loop(folder=native.parent, build="native")).keys() & {"motor.T_ref", "controller.omega_1_meas"}
 
 
 @pytest.mark.parametrize(
@@ -99,16 +90,13 @@ def test_nothing_is_asked_of_an_fmu_that_it_does_not_claim(native, tmp_path, cla
     assert how(loop(folder=native.parent, build="native", **places)) == expected
 
 
-def test_dependencies_are_read_as_declared(native, relay):
+def test_dependencies_are_read_as_declared_also_of_mapped_names(native, relay):
     assert declared(Interface(native / "MotorTorqueLoop.fmu")) == {
         "T_mot": frozenset(),
         "T_mot_est": frozenset(),
         "omega_1_meas": frozenset({"omega_1"}),
     }
     assert set(declared(Interface(relay)).values()) == {None}
-
-
-def test_a_mapped_name_keeps_its_dependencies(native):
     mapping = {"motor.measured": "omega_1_meas", "motor.speed": "omega_1"}
     fitted = fit(System({"motor": native / "MotorTorqueLoop.fmu"}, mapping=mapping))
     assert declared(fitted.interfaces["motor"])["measured"] == frozenset({"speed"})
@@ -138,8 +126,8 @@ def test_the_other_schemes_break_an_algebraic_loop_if_it_settles_at_the_start(na
         run(two_motors(native), Experiment(0.01, scheme=scheme, parameters={"a.q_omega": 0.0, "b.q_omega": 0.0}))
 
 
-def test_what_is_not_declared_makes_no_algebraic_loop(relay):
-    """PythonFMU declares nothing: everything may follow from everything."""
+def test_what_is_not_declared_makes_no_algebraic_loop_and_is_passed_on_within_the_instant(relay):
+    # PythonFMU declares nothing: everything may follow from everything.
     system = System({"a": relay, "b": relay}, (Connection("a.y", "b.u"), Connection("b.y", "a.u")))
     assert (run(system, Experiment(0.01))["b.y"] == 0.0).all()
     fitted = fit(system)
@@ -147,9 +135,6 @@ def test_what_is_not_declared_makes_no_algebraic_loop(relay):
     assert [name for outputs in feedthrough.propagation(set()) for name in outputs] == [
         *("a.y", "a.t", "a.n_out", "a.b_out"), *("b.y", "b.t", "b.n_out", "b.b_out")
     ]  # fmt: skip
-
-
-def test_what_is_not_declared_is_passed_on_within_the_instant_where_that_makes_no_loop(relay):
     fitted = fit(System({"b": relay, "a": relay}, (Connection("a.y", "b.u"),)))
     order = Feedthrough(fitted.system, fitted.interfaces).propagation(set())
     assert [outputs[0].partition(".")[0] for outputs in order] == ["a", "b"]

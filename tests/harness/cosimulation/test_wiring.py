@@ -38,15 +38,12 @@ def face(path):
     ]
 
 
-def test_parameters_are_those_that_are_given_and_where_the_fmus_start(native):
+def test_parameters_and_their_bounds_are_those_of_the_fmu_in_the_units_of_the_loop(native):
     fitted = fit(loop("TwoMassDriveline", folder=native.parent, build="native"))
     found = fitted.parameters({"plant.J_1": 0.07})
     assert found["plant"]["J_1"] == 0.07
     assert found["plant"]["C"] == float(Interface(native / "TwoMassDriveline.fmu").variables["C"].start or "nan")
     assert found.keys() == {"plant", "motor", "can", "controller"}
-
-
-def test_bounds_are_those_of_the_fmu_in_the_units_of_the_loop(native):
     fitted = fit(loop("TwoMassDriveline", folder=native.parent, build="native"))
     bounds = 0.001, 10.0
     assert list(out_of_bounds(fitted, {"plant.J_1": bounds[0], "plant.C": 1e3, "plant.unknown": 7.0})) == []
@@ -59,10 +56,12 @@ def test_bounds_are_those_of_the_fmu_in_the_units_of_the_loop(native):
     ]
 
 
-def test_both_plants_have_one_interface(built):
+def test_plants_have_one_interface_and_one_from_elsewhere_runs_in_the_loop(built, tmp_path):
     design, validation = (face(built / f"{plant}.fmu") for plant in PLANTS)
     assert design == validation
     assert len(design) > 10
+    plant = theirs(built, tmp_path, lambda xml: xml + "\n")
+    assert (simulate(SHORT, plant, folder=built) == simulate(SHORT, PLANTS[0], folder=built)).all()
 
 
 def test_native_builds_run_where_the_whole_loop_has_them(tmp_path):
@@ -95,11 +94,6 @@ def refused(built, *plant, **options):
     return str(error.value)
 
 
-def test_a_plant_from_elsewhere_runs_in_the_loop(built, tmp_path):
-    plant = theirs(built, tmp_path, lambda xml: xml + "\n")
-    assert (simulate(SHORT, plant, folder=built) == simulate(SHORT, PLANTS[0], folder=built)).all()
-
-
 @pytest.mark.parametrize(
     ("old", "new", "complaint"),
     [
@@ -114,13 +108,11 @@ def test_a_misnamed_variable_is_named(built, tmp_path, old, new, complaint):
     assert complaint in refused(built, theirs(built, tmp_path, lambda xml: xml.replace(old, new, 1)))
 
 
-def test_a_name_that_two_variables_have_is_refused(built, tmp_path):
+def test_a_name_that_two_variables_have_and_a_text_are_refused(built, tmp_path):
     twins = theirs(built, tmp_path, lambda xml: xml.replace('name="J_1"', 'name="J_2"', 1))
     expected = "plant: theirs.fmu has 2 variables of the name J_2"
     assert refused(built, twins, parameters={"plant.J_2": 0.3}) == expected
 
-
-def test_a_text_cannot_be_set(built, tmp_path):
     def change(xml):
         return re.sub(r'(name="(?:enable|k_d)"[^>]*>\s*)<\w+[^>]*/>', r'\1<String start="x"/>', xml)
 
@@ -175,16 +167,13 @@ def test_a_problem_is_one_line_whatever_the_unit_of_an_fmu_is(built, tmp_path, o
         assert "which is not a known unit (known are those such as N.m/rad)" in line
 
 
-def test_everything_that_is_wrong_is_named_at_once(built, tmp_path):
+def test_everything_that_is_wrong_is_named_at_once_with_the_nearest(built, tmp_path):
     def change(xml):
         for old, new in (("v_0", "v0"), ("pitch", "omega_3"), ("omega_2", "speed")):
             xml = xml.replace(f'name="{old}"', f'name="{new}"')
         return xml
 
     assert len(refused(built, theirs(built, tmp_path, change)).splitlines()) == 2
-
-
-def test_unknown_names_are_answered_with_the_nearest(built):
     for parameters, complaint in (
         ({"plant.J1": 0.06}, "no parameter J1; did you mean J_1"),
         ({"plat.J_1": 0.06}, "no instance plat; did you mean plant"),
@@ -195,7 +184,7 @@ def test_unknown_names_are_answered_with_the_nearest(built):
         loop("ValidationVehicel")
 
 
-def test_types_and_causality_must_suit(built):
+def test_types_and_causality_must_suit_and_an_input_is_fed_once(built):
     can, controller = built / "WheelSpeedCan.fmu", built / "DampingController.fmu"
     for source, target, complaint in (
         ("can.counter", "controller.omega_2_can", "can.counter is Integer, but .* is Real"),
@@ -204,9 +193,6 @@ def test_types_and_causality_must_suit(built):
     ):
         with pytest.raises(WiringError, match=complaint):
             run(System({"can": can, "controller": controller}, (Connection(source, target),)), Experiment(1.0))
-
-
-def test_an_input_is_fed_once(built):
     system = System({"motor": built / "MotorTorqueLoop.fmu"}, (Connection("motor.T_mot", "motor.T_ref"),))
     with pytest.raises(WiringError, match=r"motor\.T_ref is fed more than once"):
         run(system, Experiment(1.0, inputs={"motor.T_ref": 5.0}))

@@ -1,4 +1,4 @@
-"""docs/control.md says the values that the code has, and its equations survive Markdown."""
+"""docs/control.md says the values that the code has."""
 
 import re
 from math import atan, degrees, pi, sqrt
@@ -10,8 +10,6 @@ from driveline.models.controller import T_S, damping_law, torque_estimator
 from tests import ROOT
 
 PAGE = (ROOT / "docs" / "control.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"^\$\$\n(.*?)\n\$\$$", PAGE, re.DOTALL | re.MULTILINE)
-INLINE = re.findall(r"\$([^$\n]+)\$", re.sub(r"^\$\$\n.*?\n\$\$$", "", PAGE, flags=re.DOTALL | re.MULTILINE))
 
 LAW, OBSERVER = damping_law.Parameters(), torque_estimator.Parameters()
 DECLARED = OBSERVER._asdict() | LAW._asdict()
@@ -55,18 +53,3 @@ def test_what_follows_is_computed_from_them(text: str, value: float) -> None:
     (documented,) = re.findall(text, PAGE)
     decimals = len(documented.partition(".")[2])
     assert documented == f"{value:.{decimals}f}"
-
-
-@pytest.mark.parametrize("equation", BLOCKS + INLINE)
-def test_markdown_leaves_the_equations_alone(equation: str) -> None:
-    """It takes a backslash before punctuation away, and lines that begin like a list or a heading for one."""
-    assert not re.search(r"\\[^A-Za-z]", equation)
-    assert not re.search(r"^\s*[-+=#>]", equation, re.MULTILINE)
-    assert equation.count("{") == equation.count("}")
-    assert len(re.findall(r"\\left(?!arrow)", equation)) == len(re.findall(r"\\right(?!arrow)", equation))
-
-
-@pytest.mark.parametrize("equation", INLINE)
-def test_no_underscore_of_an_equation_in_a_line_begins_emphasis(equation: str) -> None:
-    assert not re.search(r"[^\w]_", equation)
-    assert equation == equation.strip()

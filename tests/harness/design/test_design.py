@@ -2,14 +2,12 @@
 
 from dataclasses import replace
 from math import pi, sqrt
-from typing import Any
 
 import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_are
 
 from driveline.fmus.errors import ParameterFileError
-from driveline.harness.commands.design import designed
 from driveline.harness.design.design import AUTHORITY, design, gains_of, literal_observer
 from driveline.harness.design.design_weights import CAN, MOTOR, PLANT, WEIGHTS, drive_train, records
 from driveline.harness.design.kalman import (
@@ -21,20 +19,13 @@ from driveline.harness.design.kalman import (
     transition,
 )
 from driveline.harness.studies.margins.modes import swing
-from driveline.models.block.declaration import variables
 from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK
-from tests import ROOT
 
 STORED_DIGITS = 1e-5
 """Six digits are stored."""
 
 SECOND_CAR = {"J_1": 0.09, "J_2": 0.45, "C": 210.0, "phi_B": 0.06, "i": 10.5, "m": 2200.0, "r": 0.34}
-
-
-def test_the_stored_gains_are_those_of_the_design() -> None:
-    stored = ROOT / "models" / "controller" / "gains.toml"
-    assert stored.read_text(encoding="utf-8") == designed(), f"driveline design --output {stored}"
 
 
 def test_the_gains_of_the_paper_s_observer_are_stationary_for_its_model() -> None:
@@ -74,13 +65,10 @@ def test_the_rarer_a_message_the_more_it_tells(cycle: int) -> None:
     assert found == pytest.approx([0.0, m / (m + R)])
 
 
-def test_the_controller_takes_its_defaults_from_the_design() -> None:
+def test_the_controller_has_the_gains_and_the_model_of_the_design() -> None:
     defaults = BLOCK.Parameters()._asdict()
     for name, value in design().items():
         assert defaults[name] == pytest.approx(value, rel=STORED_DIGITS), name
-
-
-def test_the_model_of_the_design_is_that_of_the_plant() -> None:
     p = BLOCK.Parameters()
     assert (p.J_1, p.J_2, p.C, p.phi_B) == (PLANT.J_1, PLANT.J_2, PLANT.C, PLANT.phi_B)
 
@@ -102,15 +90,12 @@ def test_a_car_of_another_size_gets_the_same_gains_in_its_own_units(scale: float
         assert value == pytest.approx(default[name] * (scale if name in with_torque else 1.0), rel=STORED_DIGITS), name
 
 
-def test_the_vehicle_takes_its_share_of_the_gear_torque() -> None:
-    """With a wheel share of 1 the estimated wheels move as one with the vehicle."""
+def test_the_vehicle_takes_its_share_of_the_gear_torque_as_far_as_the_controller_allows() -> None:
+    # With a wheel share of 1 the estimated wheels move as one with the vehicle.
     train = drive_train(PLANT, MOTOR, CAN, replace(WEIGHTS, wheel_share=1.0))
     assert train.M == pytest.approx(1450.0 * 0.29**2 / 9.0**2)
     assert (1.0 - train.lambda_v) / PLANT.J_2 == pytest.approx(1.0 / (PLANT.J_2 + train.M))
     assert train.omega_0 / (2.0 * pi) == pytest.approx(swing(PLANT, MOTOR, design())[0].frequency, rel=1e-6)
-
-
-def test_of_light_wheels_the_vehicle_takes_all_that_the_controller_allows() -> None:
     physical = PLANT._replace(J_2=1.9 / 81.0)
     assert drive_train(physical, MOTOR, CAN).lambda_v == 0.99
     assert swing(physical, MOTOR, gains_of(physical))[1].damping_ratio > 0.4
@@ -162,15 +147,12 @@ def test_a_landing_is_made_for_a_share_of_what_the_motor_can_unless_it_begins_to
     assert hard < WEIGHTS.landing * MOTOR.T_max
 
 
-def test_the_control_may_change_the_demand_by_shares_of_what_the_motor_can() -> None:
+def test_the_control_may_take_and_add_shares_of_what_the_motor_can_and_more_for_a_wide_gap() -> None:
     for T_max in (150.0, MOTOR.T_max, 500.0):
         gains = gains_of(PLANT._replace(phi_B=0.5 * PLANT.phi_B), MOTOR._replace(T_max=T_max))
         assert gains["T_take_max"] == pytest.approx(T_max * 100.0 / 180.0)
         assert gains["T_add_max"] == pytest.approx(T_max * 60.0 / 180.0)
-
-
-def test_a_gap_that_is_wider_than_usual_may_take_more() -> None:
-    """The torque of an impact without landing grows with the root of the gap; the default gap is just not wide."""
+    # The torque of an impact without landing grows with the root of the gap; the default gap is just not wide.
     default, wide = design(), gains_of(PLANT._replace(phi_B=4.0 * PLANT.phi_B))
     assert wide["T_take_max"] == pytest.approx(2.0 * default["T_take_max"], rel=1e-3)
     assert wide["T_add_max"] == default["T_add_max"]
@@ -184,53 +166,33 @@ def test_a_limit_that_a_user_sets_stays_a_limit(name: str) -> None:
     assert design(limits={name: 1.001 * asked})[name] == asked
 
 
-def test_an_older_message_corrects_less() -> None:
+def test_an_older_message_corrects_less_and_a_larger_damping_ratio_damps_more() -> None:
     late = CAN._replace(d_min=0.02, d_max=0.04)
     assert gains_of(can=late)["T_age"] == pytest.approx(design()["T_age"] + 0.017)
     assert 0.0 < gains_of(can=late)["L_can_omega_2"] < design()["L_can_omega_2"]
-
-
-def test_more_damping_is_asked_for_by_a_larger_damping_ratio() -> None:
     ratios = [0.5, 0.6, 0.7]
     found = [swing(PLANT, MOTOR, design(weights=replace(WEIGHTS, damping_ratio=ratio)))[1] for ratio in ratios]
     assert [mode.damping_ratio for mode in found] == sorted(mode.damping_ratio for mode in found)
 
 
-def test_the_load_torque_is_a_random_walk_in_the_design() -> None:
+def test_the_load_torque_is_a_random_walk_and_a_filter_that_does_not_exist_shows_its_matrices() -> None:
     A = transition(PLANT, 0.9)
     assert A[3].tolist() == [0.0, 0.0, 0.0, 1.0]
     assert np.all(np.linalg.eigvalsh(process_noise(PLANT, MOTOR, drive_train(PLANT, MOTOR, CAN), WEIGHTS)) > 0.0)
-
-
-@pytest.mark.parametrize(
-    ("car", "message"),
-    [
-        ({"T_cyc": 0.2}, r"T_age would be 0\.113; the controller takes 0\.002 to 0\.1 s"),
-        ({"J_1": 10.0}, r"k_d would be .*; the controller takes 0 to 200 N\.m\.s/rad"),
-        ({"sigma_omega": 0.0, "q_omega": 0.0}, "a motor speed without error leaves nothing to estimate"),
-    ],
-)
-def test_what_the_controller_cannot_be_set_to_is_said(car: dict[str, float], message: str) -> None:
-    with pytest.raises(DesignError, match=message):
-        design(car)
-
-
-@pytest.mark.parametrize(
-    ("car", "message"),
-    [
-        ({"mm": 1900.0, "J1": 0.1}, r"mm is not known; did you mean m\?\nJ1 is not known; did you mean J_1"),
-        (3, "the car 3 must be the entries of a vehicle file"),
-    ],
-)
-def test_a_design_takes_what_a_vehicle_file_may_have(car: Any, message: str) -> None:
-    with pytest.raises(ParameterFileError, match=message):
-        design(car)
-
-
-def test_a_filter_that_does_not_exist_shows_its_matrices() -> None:
     with pytest.raises(DesignError, match=r"(?s)no stationary Kalman filter.*A =\n\[\[2\."):
         motor_speed_gains(2.0 * np.eye(4), np.zeros((4, 4)), 1.0)
 
 
-def test_every_designed_parameter_is_one_of_the_controller() -> None:
-    assert design().keys() <= {variable.name for variable in variables(BLOCK.Parameters)}
+@pytest.mark.parametrize(
+    ("car", "error", "message"),
+    [
+        ({"T_cyc": 0.2}, DesignError, r"T_age would be 0\.113; the controller takes 0\.002 to 0\.1 s"),
+        ({"J_1": 10.0}, DesignError, r"k_d would be .*; the controller takes 0 to 200 N\.m\.s/rad"),
+        ({"sigma_omega": 0.0, "q_omega": 0.0}, DesignError, "a motor speed without error leaves nothing to estimate"),
+        ({"mm": 1.0, "J1": 0.1}, ParameterFileError, r"mm is not known; did you mean m\?\nJ1 is .*; did you mean J_1"),
+        (3, ParameterFileError, "the car 3 must be the entries of a vehicle file"),
+    ],
+)
+def test_what_the_controller_cannot_be_set_to_and_what_no_vehicle_has_is_said(car, error, message) -> None:
+    with pytest.raises(error, match=message):
+        design(car)

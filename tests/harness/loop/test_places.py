@@ -58,12 +58,13 @@ def test_a_file_takes_the_place_of_a_block(native, usual, tmp_path, place):
         ("controller", "DampingControler", "did you mean DampingController"),
         ("motor", "Motor", "known are: MotorTorqueLoop"),
         ("can", "TwoMassDriveline", "known are: WheelSpeedCan"),
+        *((place, "", r"\(an empty name\)") for place in PLACES),
     ],
 )
 def test_an_unknown_block_is_answered_with_those_of_its_place(place, name, hint):
     block: dict[str, Any] = {place: name}
     for function in (loop, chosen_build):
-        with pytest.raises(WiringError, match=rf"unknown {place} {name}; {hint}.*\.fmu"):
+        with pytest.raises(WiringError, match=rf"unknown {place} {f'{name}; {hint}' if name else hint}.*\.fmu"):
             function(**block)
 
 
@@ -100,15 +101,12 @@ def test_without_damping_none_stands_in_the_place_of_a_controller_that_is_always
         run(system, Experiment(SHORT.duration, inputs=at_times, parameters=start(SHORT)))
 
 
-def test_what_is_not_optional_must_be_there(built, relay):
+def test_what_is_not_optional_must_be_there_and_a_seed_need_not(built, relay, both_built, tmp_path):
     with pytest.raises(WiringError) as error:
         simulate(SHORT, folder=built, controller=relay, mapping={"controller.T_ref": "y"})
     assert [line.partition(":")[0] for line in str(error.value).splitlines()] == [
         "controller.T_driver", "controller.omega_1_meas"
     ]  # fmt: skip
-
-
-def test_a_motor_without_noise_has_no_seed(both_built, tmp_path):
     plain = tampered(
         both_built / "MotorTorqueLoop.fmu", tmp_path / "plain.fmu", lambda xml: xml.replace("seed", "grain")
     )
@@ -131,10 +129,3 @@ def test_the_page_says_what_each_place_needs():
                     documented[f"{place.strip(' `')}.{name}"] = causality, unit or None, may_lack
     ports = [(causality, port) for causality, ports in loop().ports.items() for port in ports]
     assert documented == {port.name: (causality, port.unit, port.name in OPTIONAL) for causality, port in ports}
-
-
-@pytest.mark.parametrize("place", PLACES)
-def test_an_empty_name_is_no_block(place):
-    blocks: dict[str, Any] = {place: ""}
-    with pytest.raises(WiringError, match=rf"unknown {place} \(an empty name\)"):
-        loop(**blocks)

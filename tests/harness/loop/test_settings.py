@@ -13,18 +13,18 @@ from driveline.harness.loop.places import PLACES
 from driveline.harness.loop.settings import Changes, Settings, settings
 
 
-def test_the_keyword_arguments_are_the_fields_of_the_record_and_each_is_checked() -> None:
-    names = {field.name for field in fields(Settings)}
-    assert names == set(Changes.__annotations__) == set(ARGUMENTS)
-
-
-def test_settings_are_given_as_a_record_a_plant_or_keyword_arguments() -> None:
+def test_settings_are_given_as_a_record_a_plant_or_keyword_arguments_which_are_its_fields() -> None:
     made = Settings(plant="ValidationVehicle", seed=7)
     assert (
         settings("ValidationVehicle", seed=7) == settings(plant="ValidationVehicle", seed=7) == settings(made) == made
     )
     assert settings(made, seed=1) == Settings(plant="ValidationVehicle")
     assert settings() == Settings()
+    given: dict[str, Any] = {"scheme": "jacobi", "folder": "build/van", "parameters": None, "mapping": None}
+    made = settings(**given)
+    assert (made.scheme, made.folder, made.parameters, made.mapping) == (Scheme.JACOBI, Path("build/van"), {}, {})
+    names = {field.name for field in fields(Settings)}
+    assert names == set(Changes.__annotations__) == set(ARGUMENTS)
 
 
 @pytest.mark.parametrize("place", PLACES)
@@ -33,20 +33,11 @@ def test_none_in_a_place_is_the_usual_block(place: str) -> None:
     assert Settings(**none) == Settings(**none).replace(**none) == Settings()
 
 
-def test_what_stands_for_a_value_becomes_that_value() -> None:
-    given: dict[str, Any] = {"scheme": "jacobi", "folder": "build/van", "parameters": None, "mapping": None}
-    made = settings(**given)
-    assert (made.scheme, made.folder, made.parameters, made.mapping) == (Scheme.JACOBI, Path("build/van"), {}, {})
-
-
-def test_further_parameters_leave_the_others_and_the_record_they_are_added_to() -> None:
+def test_the_parameters_of_a_record_do_not_change_with_what_it_was_made_from_or_added_to() -> None:
     before = Settings(parameters={"plant.J_1": 0.06, "plant.m": 1300.0})
     after = before.with_parameters({"plant.m": 1500.0})
     assert after.parameters == {"plant.J_1": 0.06, "plant.m": 1500.0}
     assert before.parameters["plant.m"] == 1300.0
-
-
-def test_a_record_does_not_change_with_the_dictionary_that_it_was_made_from() -> None:
     parameters = {"plant.m": 1300.0}
     made = Settings(parameters=parameters)
     parameters["plant.m"] = 1500.0
@@ -61,8 +52,5 @@ def test_what_no_run_has_is_refused() -> None:
         settings("ValidationVehicle", plant="TwoMassDriveline")
     with pytest.raises(WiringError, match="seed = 'two': it must be a whole number"):
         settings(seed="two")  # type: ignore[arg-type]
-
-
-def test_a_field_that_is_none_is_refused_with_the_nearest() -> None:
     with pytest.raises(TypeError, match=r"^there is no setting sed; did you mean seed\?$"):
         settings(sed=2)  # type: ignore[call-arg]

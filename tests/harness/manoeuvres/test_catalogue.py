@@ -107,12 +107,9 @@ def test_a_flat_sine_has_its_period_its_flanks_and_its_amplitude(frequency: floa
     assert signal(np.array([1.0 / 24.0 / frequency])) == pytest.approx(3.0 + 20.0 * np.sin(np.pi / 12.0))
 
 
-def test_the_bundled_file_is_what_its_script_writes(tmp_path):
+def test_the_bundled_drive_is_that_of_its_script_with_stops_and_zero_torque(tmp_path):
     town_drive.write(tmp_path / "again.csv")
     assert (tmp_path / "again.csv").read_bytes() == town_drive.PATH.read_bytes()
-
-
-def test_it_pulls_away_passes_zero_torque_and_stops_at_a_light():
     recording = read_drive(town_drive.PATH)
     moving = recording.v > 0.0
     starts = np.flatnonzero(moving[1:] & ~moving[:-1])

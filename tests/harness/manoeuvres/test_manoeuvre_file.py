@@ -23,7 +23,7 @@ def read(folder: Path, text: str, name: str = "mine.toml"):
     return read_manoeuvre(path)
 
 
-def test_the_example_is_read_as_it_says():
+def test_the_example_is_read_as_it_says_and_has_every_kind_and_key_as_the_page():
     manoeuvre = read_manoeuvre(EXAMPLE)
     assert (manoeuvre.name, manoeuvre.duration) == ("overtaking", 20.0)
     assert manoeuvre.v_0 == pytest.approx(50 / 3.6)
@@ -31,9 +31,6 @@ def test_the_example_is_read_as_it_says():
     assert manoeuvre.T_brake([8.1, 8.2, 8.6]).tolist() == [0.0, 400.0, 0.0]
     assert manoeuvre.slope([3.0, 8.0, 9.0]) == pytest.approx([atan(0.04), 0.5 * atan(0.04), 0.0])
     assert manoeuvre.dT is None
-
-
-def test_the_example_and_the_page_have_every_kind_and_key():
     text = EXAMPLE.read_text(encoding="utf-8")
     assert text.partition("\n\n")[2].strip() in PAGE
     for kind, part in KINDS.items():
@@ -42,9 +39,7 @@ def test_the_example_and_the_page_have_every_kind_and_key():
         assert re.findall(r"`(\w+)`", row) == list(signature(part).parameters)
 
 
-def test_the_lines_of_python_on_the_page_print_what_they_say(
-    both_built: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_lines_of_python_on_the_page_print_what_they_say(both_built, capsys) -> None:
     (lines,) = re.findall(r"```python\n(.*?)```", PAGE, re.S)
     exec(re.sub(r"simulate\((\w+)\)", rf"simulate(\1, folder=Path({str(both_built)!r}))", lines), {"Path": Path})
     settling, absent = capsys.readouterr().out.splitlines()
@@ -109,7 +104,7 @@ def test_what_is_wrong_is_said_in_one_line_with_file_key_and_value(tmp_path, tex
     assert str(refusal.value).isprintable()
 
 
-def test_a_table_is_read_as_straight_lines_with_jumps(tmp_path):
+def test_a_table_is_read_as_straight_lines_with_jumps_and_gaps(tmp_path):
     rows = ("2000,-0.012,0,36", "3000,-0.012,0,36", "3000,0.1,0,36", "8000,0.1,0,40")
     text = "\n".join(("Time [ms],T_driver [kNm],Slope [%],Speed [km/h]", *rows, ""))
     manoeuvre = read(tmp_path, text, "mine.csv")
@@ -118,9 +113,6 @@ def test_a_table_is_read_as_straight_lines_with_jumps(tmp_path):
     steep = read(tmp_path, text.replace(",0,40", ",5,40"), "mine.csv")
     assert steep.slope([1.0, 6.0]) == pytest.approx([0.0, atan(0.05)])
     assert steep.dT is None, "the slope changes"
-
-
-def test_a_table_needs_the_demand_alone_and_may_have_gaps(tmp_path):
     manoeuvre = read(tmp_path, "t [s];T_driver [N.m];T_brake [N.m]\n0;1;0\n0,1;1;0\n100;1;500\n", "mine.csv")
     assert (manoeuvre.duration, manoeuvre.v_0) == (100.0, 0.0)
     assert manoeuvre.T_brake(100.0) == 500.0

@@ -103,10 +103,16 @@ def test_a_slow_car_is_decelerated_by_the_brakes_alone(v, brakes):
     assert brake_force(slowing, LOAD, by_the_motor)[200] == pytest.approx(1.09 * 1450.0 * 1e-3 if brakes else 0.0)
 
 
-def test_brakes_and_grade_have_limits():
+def test_brakes_and_grade_have_limits_and_a_rough_foot_holds_its_torque():
     manoeuvre = drive(track(10.0), LOAD, np.full(400, -1e6))
     assert manoeuvre.T_brake(20.0) == pytest.approx(0.29 * F_BRAKE_MAX)
     assert np.sin(manoeuvre.slope(20.0)) == pytest.approx(SIN_MAX)
+    recorded = replace(track(10.0), T_driver=np.arange(400.0))
+    F = needed_force(recorded, LOAD)
+    held, smooth = drive(recorded, LOAD, F, held=0.5), drive(recorded, LOAD, F)
+    assert held.T_driver([0.0, 0.499, 0.5, 1.7, 2.0]) == pytest.approx([0, 0, 5, 15, 20])
+    assert smooth.T_driver([0.25]) == pytest.approx([2.5])
+    assert held.T_brake([1.0]) == smooth.T_brake([1.0])
 
 
 @pytest.mark.parametrize(("push", "held"), [(0.99 * F_UNCERTAIN, True), (1.01 * F_UNCERTAIN, False)])
@@ -119,12 +125,3 @@ def test_a_standing_car_is_held_until_its_driver_drives(push, held):
     assert holding(track(0.0, torque), LOAD, nothing + 10.0).all() == held
     manoeuvre = drive(track(0.0, torque), LOAD, nothing)
     assert manoeuvre.T_brake(20.0) == pytest.approx(0.29 * F_BRAKE_MAX if held else 0.0)
-
-
-def test_the_rough_foot_holds_its_torque():
-    recorded = replace(track(10.0), T_driver=np.arange(400.0))
-    F = needed_force(recorded, LOAD)
-    held, smooth = drive(recorded, LOAD, F, held=0.5), drive(recorded, LOAD, F)
-    assert held.T_driver([0.0, 0.499, 0.5, 1.7, 2.0]) == pytest.approx([0, 0, 5, 15, 20])
-    assert smooth.T_driver([0.25]) == pytest.approx([2.5])
-    assert held.T_brake([1.0]) == smooth.T_brake([1.0])

@@ -1,12 +1,16 @@
 """Signals within a band over time, low-passed, and over frequency, against scipy and systems that are known."""
 
+from math import isnan
+
 import numpy as np
 import pytest
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from driveline.harness.metrics import band_filter, spectrum
 from driveline.harness.metrics.band_filter import band_part, derivative, envelope, forwards_and_backwards
 from driveline.harness.metrics.declaration import Absent
+from driveline.harness.metrics.estimate import estimate_metrics
+from driveline.harness.metrics.frequency_response import amplitude_spectrum, frequency_response
 from driveline.harness.metrics.oscillation import low_passed
 from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
 
@@ -52,9 +56,7 @@ def test_a_filter_in_pieces_gives_what_scipy_gives(at_once: int, ends: int, monk
 
 @pytest.mark.parametrize(("band", "of_slope"), [(DRIVE_TRAIN, False), (TO_50_HZ, True)])
 @pytest.mark.parametrize("length", [999, 1000, 1009])
-def test_a_spectrum_block_by_block_is_that_of_all_at_once(
-    band: tuple[float, float], of_slope: bool, length: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_spectrum_block_by_block_is_that_of_all_at_once(band, of_slope, length, monkeypatch) -> None:
     x = np.random.default_rng(4).standard_normal(length).cumsum()
     expected = band_parts(x, T_S, band, of_slope)
     monkeypatch.setattr(spectrum, "MOST_AT_ONCE", length - 1)
@@ -87,3 +89,49 @@ def test_too_few_samples_for_the_low_pass_have_no_answer(samples, T_s):
     with pytest.raises(Absent, match=f"{samples} samples every"):
         low_passed(np.ones(samples), T_s, 12.0)
     assert low_passed(np.ones(10), 0.99 / 24.0, 12.0) == pytest.approx(np.ones(10))
+
+
+def test_the_response_to_a_step_is_that_of_the_filter() -> None:
+    u = np.where(np.arange(3000) < 500, -12.0, 100.0)
+    pole = np.exp(-T_S / 0.05)
+    y = lfilter([1.0 - pole], [1.0, -pole], u - u[0]) + u[0]
+    f, answer = frequency_response(u, y, T_S)
+    at = (f > 0.5) & (f < 20.0)
+    z = np.exp(2j * np.pi * f[at] * T_S)
+    np.testing.assert_allclose(np.abs(answer[at]), np.abs((1.0 - pole) / (1.0 - pole / z)), rtol=0.02)
+
+
+def test_there_is_no_response_where_the_input_has_nothing_as_a_constant_one() -> None:
+    t = T_S * np.arange(5000)
+    f, answer = frequency_response(np.sin(2.0 * np.pi * 2.0 * t), np.sin(2.0 * np.pi * 2.0 * t), T_S)
+    assert np.abs(answer[np.argmin(np.abs(f - 2.0))]) == pytest.approx(1.0)
+    assert np.isnan(answer[f > 10.0]).all()
+    _, answer = frequency_response(np.full(1000, 5.0), np.arange(1000.0), T_S)
+    assert np.isnan(answer).all()
+
+
+def test_the_amplitude_of_a_sine_on_a_drift_is_its_own() -> None:
+    t = T_S * np.arange(5001)
+    f, amplitude = amplitude_spectrum(3.0 * np.sin(2.0 * np.pi * 8.0 * t) + 20.0 * t, T_S)
+    assert amplitude.max() == pytest.approx(3.0, rel=0.01)
+    assert f[amplitude.argmax()] == pytest.approx(8.0, abs=0.05)
+
+
+def results(true: list[float], estimated: list[float], phi_hat: float = 0.1) -> np.ndarray:
+    columns = ("time", "plant.T_gear", "controller.T_gear_hat", "controller.phi_hat")
+    rows = [(0.002 * k, *each, phi_hat) for k, each in enumerate(zip(true, estimated, strict=True))]
+    return np.array(rows, dtype=[(name, float) for name in columns])
+
+
+def test_an_estimate_is_biased_or_in_a_wrong_mode_or_none() -> None:
+    found = estimate_metrics(results([10.0, -20.0, 30.0], [2.0, -4.0, 6.0]))
+    assert found.bias == pytest.approx(-0.8)
+    assert found.wrong_mode == 0.0
+    assert "the teeth are never in the gap" in found.absent["wrong_gap"]
+    found = estimate_metrics(results([10.0, 10.0, 0.0, 0.0, -5.0], [9.0, 0.0, 0.0, 3.0, 2.0]))
+    assert found.wrong_mode == pytest.approx(0.6)
+    assert found.wrong_gap == pytest.approx(0.5)
+    assert found.error_rms == pytest.approx(np.sqrt((1.0 + 100.0 + 49.0) / 3.0))
+    found = estimate_metrics(results([10.0, 0.0], [9.0, 9.0], phi_hat=0.0))
+    assert isnan(found.bias)
+    assert found.absent["bias"] == "the controller estimates no twist"

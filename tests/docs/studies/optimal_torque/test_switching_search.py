@@ -58,13 +58,10 @@ def test_teeth_that_have_to_meet_too_early_are_proven_to_be_impossible(search: S
     assert early.bound > 1.0
 
 
-def test_around_contacts_are_those_in_order(search: Search) -> None:
+def test_contacts_and_torques_are_searched_in_order(search: Search) -> None:
     crossing = Contacts((-1, 0, 1), (10, 11))
     around = {c.ends for c in search.around(crossing, 1)}
     assert around == {(9, 10), (9, 11), (9, 12), (10, 12), (11, 12)}
-
-
-def test_a_torque_is_held_until_the_next_sample_that_has_one() -> None:
     assert holds(((3, 1), (9, 3), (100, 5)), 14).tolist() == [0, 1, 2, 3, 6, 9]
     assert holds(FINE, 1000)[-1] == 992
 
@@ -87,20 +84,14 @@ def looked_at(search: Search, end: int) -> list[int]:
 
 
 def test_neighbours_are_looked_at_until_all_around_are_proven_to_be_worse() -> None:
-    """By the factor 1.003; those that are proven to be are not gone beyond."""
+    # By the factor 1.003; those that are proven to be are not gone beyond.
     for at_border, reach in ((1.0029, 4), (1.0031, 3)):
         bounds = {10: 1.0, 11: 1.002, 12: 1.001, 13: at_border, 14: 2.0, 9: 1.2}
         search = Known(lambda end: 1.0 if end == 10 else 1.5, lambda end: bounds.get(end, 0.0))  # noqa: B023
         assert looked_at(search, 10) == list(range(9, 10 + reach + 1))
-
-
-def test_a_neighbour_that_is_better_becomes_the_best() -> None:
-    """What was not proven to be worse before is, beside it."""
+    # What was not proven to be worse before is, beside it.
     bounds = {10: 0.9, 11: 1.5, 9: 0.49, 8: 0.5, 7: 0.9}
     search = Known(lambda end: 0.5 if end == 9 else 1.0, lambda end: bounds.get(end, 0.0))
     assert looked_at(search, 10) == [7, 8, 9, 10, 11]
-
-
-def test_switching_times_end_where_the_head_ends_and_the_bound_is_that_of_all() -> None:
     assert looked_at(Known(lambda end: 1.0, lambda end: BORDER - 1e-6), 10) == list(range(1, 40))
     assert looked_at(Known(lambda end: 1.0, lambda end: BORDER + 1e-6), 10) == [10]

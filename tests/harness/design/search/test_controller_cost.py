@@ -62,39 +62,27 @@ def test_more_of_any_term_costs_more_in_its_group_alone(term: tuple[str, Term]) 
     assert {name for name in Costs._fields if getattr(found, name) > 1.0 + 1e-9} == {group}
 
 
-def test_a_sign_does_not_matter() -> None:
+def test_runs_and_terms_count_by_their_weights_and_worse_more_than_better() -> None:
     assert cost_of(withheld_time=-0.012, stationary_torque_change=-0.01) == cost_of()
-
-
-def test_what_becomes_worse_counts_more_than_what_becomes_better() -> None:
     assert costs([STEP] * 2, [replace(FOUND, overshoot=0.2 + d) for d in (0.05, -0.05)], [FOUND] * 2).comfort > 1.0
+    worse, light = replace(FOUND, overshoot=0.43), STEP._replace(weight=0.25)
+    both = costs([STEP, light], [FOUND, worse], [FOUND, FOUND]).comfort
+    assert both == pytest.approx(((1.0 + 1.0 + 0.25 * (2.0**4 + 1.0)) / 2.5) ** 0.25)
 
 
-def test_a_difference_below_the_floor_hardly_matters() -> None:
+def test_small_differences_hardly_count_and_what_is_lacking_costs() -> None:
     term = Term("overshoot", 1.0, 0.03)
     reference = replace(FOUND, overshoot=0.0)
     assert ratio(term, STEP, replace(FOUND, overshoot=0.03), reference) == pytest.approx(2.0)
     assert ratio(term, STEP, replace(FOUND, overshoot=0.003), reference) == pytest.approx(1.1)
-
-
-def test_what_the_reference_does_not_have_does_not_count_and_what_the_controller_lacks_costs() -> None:
     term = Term("response_delay", 1.0, 0.0)
     assert ratio(term, STEP, FOUND, replace(FOUND, response_delay=nan)) is None
     assert ratio(term, STEP, replace(FOUND, response_delay=nan), FOUND) == LOST
-
-
-def test_what_has_not_settled_settles_at_the_end_of_the_run() -> None:
     term = Term("settling_time", 1.0, 0.0)
     never = replace(FOUND, settling_time=nan)
     assert ratio(term, STEP, never, FOUND) == LASTS / 0.1
     assert ratio(term, STEP, never, never) == 1.0
     assert ratio(term, DRIVE, never, never) is None
-
-
-def test_runs_and_terms_count_by_their_weights() -> None:
-    worse, light = replace(FOUND, overshoot=0.43), STEP._replace(weight=0.25)
-    both = costs([STEP, light], [FOUND, worse], [FOUND, FOUND]).comfort
-    assert both == pytest.approx(((1.0 + 1.0 + 0.25 * (2.0**4 + 1.0)) / 2.5) ** 0.25)
 
 
 def test_sport_pays_for_the_response_and_comfort_for_comfort() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from driveline.harness.base.errors import MissingExtra
 from driveline.harness.design.search.controller_cost import Costs
-from driveline.harness.design.search.parameter_search import LEGS, Evaluated, Search, best, front
+from driveline.harness.design.search.parameter_search import Evaluated, Search, best, front
 from driveline.harness.design.search.search_space import Searched, Space
 
 SPACE = Space((Searched("k", 2.0, 0.2, 10.0), Searched("T", 0.004, 0.0, 0.012)), {"L": 0.3})
@@ -54,32 +54,23 @@ def test_it_visits_as_many_candidates_as_asked_for_the_start_first(evaluations: 
     assert visited[0].values == SPACE.start
 
 
-def test_the_same_seed_gives_the_same_candidates_and_another_one_others() -> None:
+def test_the_same_seed_gives_the_same_candidates_within_their_ranges() -> None:
     assert found(60) == found(60)
     assert found(60)[1:] != found(60, seed=2)[1:]
-
-
-def test_all_candidates_are_in_their_ranges_and_carry_what_is_computed() -> None:
     bowl = Bowl()
     Search(SPACE, bowl).run(240)
     assert all(0.2 <= each["k"] <= 10.0 and 0.0 <= each["T"] <= 0.012 and each["L"] == 0.3 for each in bowl.asked)
 
 
-def test_a_search_that_was_stopped_goes_on_where_it_was() -> None:
+def test_a_search_that_was_stopped_goes_on_with_what_it_noted_as_soon_as_it_was_known() -> None:
     whole = found(100)
     known = {each.values: each.costs for each in islice(whole, 37)}
     bowl = Bowl()
     assert Search(SPACE, bowl, known=known).run(100) == whole
     assert len(bowl.asked) == len({each.values for each in whole}) - len({each.values for each in whole[:37]})
     assert known == {each.values: each.costs for each in whole}
-
-
-def test_what_is_known_from_elsewhere_is_not_chosen() -> None:
     better = {(4.0, 0.006): Costs(0.0, 0.0, 0.0)}
     assert Search(SPACE, Bowl(), known=better).run(60) == found(60)
-
-
-def test_each_candidate_is_noted_as_soon_as_it_is_known() -> None:
     known: dict[tuple[float, ...], Costs] = {}
     counts: list[tuple[int, int]] = []
     Search(SPACE, Bowl(), known=known, note=lambda count: counts.append((count, len(known)))).run(20)
@@ -102,13 +93,6 @@ def test_the_front_has_what_nothing_beats() -> None:
     assert [each.costs.comfort for each in kept] == sorted(each.costs.comfort for each in kept)
     for one in visited:
         assert any(k.costs.comfort <= one.costs.comfort and k.costs.response <= one.costs.response for k in kept)
-
-
-def test_the_legs_end_with_the_evaluations() -> None:
-    ends = [leg.until for leg in LEGS]
-    assert ends == sorted(ends)
-    assert ends[-1] == 1.0
-    assert {leg.character for leg in LEGS} == {0.0, 0.5, 1.0}
 
 
 def test_without_the_optimiser_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,16 +1,27 @@
-"""What is searched follows from the declaration of the controllers' parameters."""
+"""What is searched follows from the declaration of the parameters, by which runs it is tuned, and what is held out."""
 
+from dataclasses import fields
 from typing import Any
 
 import pytest
 
 from driveline.fmus.building.parameter_files import of_plants, read_vehicle
 from driveline.fmus.catalogue import EVERY
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.design.design import AUTHORITY, design, literal_observer
 from driveline.harness.design.design_weights import records
+from driveline.harness.design.search.pareto_figure import MARGIN, _around, _symbol
 from driveline.harness.design.search.search_space import Searched, space
-from driveline.harness.loop.places import PLACES
+from driveline.harness.design.search.tuning_runs import (
+    AT_CORNERS,
+    HELD_OUT_MANOEUVRES,
+    HELD_OUT_SEEDS,
+    RUNS,
+    SLOW_MOTOR,
+)
+from driveline.harness.design.uncertainty_box import BOX, NOMINAL
+from driveline.harness.loop.places import PLACES, PLANTS, T_S
+from driveline.harness.manoeuvres.catalogue import COMPARED, USUAL_MANOEUVRES
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 from driveline.models.block.declaration import Real, variables
 from tests import ROOT
 
@@ -46,14 +57,11 @@ def test_a_range_lies_within_the_bounds_and_around_the_start(controller: str) ->
             assert name not in of_plants()
 
 
-def test_our_law_is_searched_and_what_is_computed_is_not() -> None:
+def test_our_law_is_searched_from_what_the_formulas_make_of_the_car() -> None:
     found = space(OURS, {})
     assert {each.name for each in found.searched} >= {"k_d", "k_T", "omega_w", "T_gap"}
     assert found.computed.keys() == design().keys() - {each.name for each in found.searched}
     assert {"lambda_v", "L_phi", "Ls_phi", "L_can_phi"} <= found.computed.keys()
-
-
-def test_the_start_is_what_the_formulas_make_of_the_car() -> None:
     designed = design(VAN)
     found = space(OURS, VAN)
     assert found.parameters(found.start) == pytest.approx(designed, rel=1e-5)
@@ -61,26 +69,18 @@ def test_the_start_is_what_the_formulas_make_of_the_car() -> None:
     assert k_d.high / k_d.start == pytest.approx(10.0 / design()["k_d"], rel=1e-5)
 
 
-def test_others_take_what_they_have_in_common_with_ours() -> None:
+def test_others_take_what_they_have_in_common_with_ours_and_the_paper_s_observer_its_own_gains() -> None:
     usual, of_van = space("LinearObserver", {}), space("LinearObserver", VAN)
     assert of_van.computed["L_phi"] == space(OURS, VAN).computed["L_phi"] != usual.computed["L_phi"]
     washout = space("SpeedWashout", VAN)
     assert [each.name for each in washout.searched] == ["k_v", "omega_v", "zeta_v"]
     assert washout.computed.keys() == set(AUTHORITY)
-
-
-def test_the_paper_s_observer_gets_the_gains_of_its_own_model() -> None:
     usual, of_van = space("PaperObserver", {}), space("PaperObserver", VAN)
     estimator = {name for name in declared("PaperObserver") if name.startswith("L")}
     assert usual.computed == {name: declared("PaperObserver")[name].start for name in (*estimator, "T_age", *AUTHORITY)}
     assert of_van.computed.keys() == usual.computed.keys()
     assert of_van.computed["L_phi"] == pytest.approx(literal_observer(*records(VAN))["L_phi"], rel=1e-5)
     assert of_van.computed["L_phi"] != pytest.approx(usual.computed["L_phi"], rel=0.01)
-
-
-def test_what_has_nothing_to_search_is_refused() -> None:
-    with pytest.raises(DrivelineError, match="NoDamping has no parameter that is searched"):
-        space("NoDamping", {})
 
 
 @pytest.mark.parametrize("each", [Searched("k", 2.0, 0.2, 10.0), Searched("T", 0.004, 0.0, 0.012)])
@@ -93,10 +93,57 @@ def test_a_coordinate_is_zero_at_the_start_and_ends_with_the_range(each: Searche
     assert each.value(-99.0) == each.low
 
 
-def test_a_range_above_zero_goes_by_factors_and_others_by_halves() -> None:
+def test_coordinates_go_by_factors_above_zero_else_by_halves_with_the_digits_of_a_file() -> None:
     assert Searched("k", 2.0, 0.2, 10.0).value(1.0) == pytest.approx(2.0 * 2.718282, rel=1e-5)
     assert Searched("T", 0.004, 0.0, 0.012).value(1.0) == pytest.approx(0.01)
-
-
-def test_a_candidate_has_the_digits_of_a_file() -> None:
     assert Searched("k", 2.0, 0.2, 10.0).value(0.1) == 2.21034
+
+
+PART_OF_ANOTHER = {"prbs15"}
+
+
+def test_every_usual_manoeuvre_is_driven_on_both_plants_or_held_out_as_long_as_needed() -> None:
+    for plant in PLANTS:
+        in_runs = {run.name for run in RUNS if run.plant == plant and run.deviation == NOMINAL}
+        assert in_runs.isdisjoint(HELD_OUT_MANOEUVRES)
+        assert in_runs | {*HELD_OUT_MANOEUVRES} | PART_OF_ANOTHER == {each.name for each in USUAL_MANOEUVRES}
+    assert {*COMPARED} & {*HELD_OUT_MANOEUVRES} == {"tipin50r"}
+    for run in RUNS:
+        in_runs, whole = run.manoeuvre, CATALOGUE[run.name]
+        assert in_runs.duration == (whole.duration if whole.dT is None else 3.0)
+        assert all(getattr(in_runs, f.name) == getattr(whole, f.name) for f in fields(whole) if f.name != "duration")
+        assert round(in_runs.duration / T_S) * T_S == in_runs.duration
+
+
+def test_no_run_has_a_held_out_manoeuvre_or_seed_or_a_draw_from_inside_the_box() -> None:
+    assert HELD_OUT_SEEDS == (11, 12, 13)
+    assert not {run.seed for run in RUNS} & {*HELD_OUT_SEEDS}
+    assert not {run.name for run in RUNS} & {*HELD_OUT_MANOEUVRES}
+    for run in RUNS:
+        if run.deviation not in (NOMINAL, SLOW_MOTOR):
+            assert all(getattr(run.deviation, name) in BOX[name] for name in BOX), run
+    for plant in PLANTS:
+        at = [(run.deviation, run.name) for run in RUNS if run.plant == plant and run.deviation.loss]
+        assert len(at) == len(set(at)) == 6 * len(AT_CORNERS)
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("k_d", "$k_{d}$"),
+        ("omega_w", r"$\omega_{w}$"),
+        ("T_take_max", "$T_{take_max}$"),
+        ("d", "$d$"),
+        ("landing_share", "landing_share"),
+    ],
+)
+def test_a_parameter_is_a_symbol_with_its_index_and_a_word_stays_a_word(name: str, shown: str) -> None:
+    assert _symbol(name) == shown
+
+
+@pytest.mark.parametrize(
+    ("values", "limits"),
+    [([1.0, 3.0], (1.0 - 2.0 * MARGIN, 3.0 + 2.0 * MARGIN)), ([1.0], (0.98, 1.02)), ([1.0, 1.01], (0.98, 1.03))],
+)
+def test_points_have_a_margin_around_them_even_where_there_is_only_one(values, limits) -> None:
+    assert _around(values) == pytest.approx(limits)

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from driveline.harness.base.errors import DrivelineError
+from driveline.harness.base.errors import DrivelineError, SimulationError
 from driveline.harness.design.search.controller_cost import Costs
 from driveline.harness.design.search.cost_evaluation import CostEvaluation
-from driveline.harness.design.search.parameter_search import Evaluated, Search
+from driveline.harness.design.search.parameter_search import Evaluated
 from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tune import EVALUATIONS, RECORD, table, tune
 from driveline.harness.design.search.tuning_runs import Run
@@ -16,14 +16,8 @@ from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.loop.settings import Settings
 from driveline.harness.simulation.case_archive import CaseArchive
 
-SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0), Run("TwoMassDriveline", "launch", NOMINAL, 2, 1.0))
 OURS = space("DampingController", {})
 COUNT = 12
-
-
-@pytest.fixture
-def evaluation(native: Path) -> CostEvaluation:
-    return CostEvaluation(Settings(folder=native.parent), runs=SHORT)
 
 
 def searched(
@@ -40,55 +34,9 @@ def test_a_search_is_the_same_on_any_number_of_cores(evaluation: CostEvaluation,
     assert sorted(path.name for path in (tmp_path / "1").iterdir()) == [EVALUATIONS, RECORD]
 
 
-@pytest.mark.slow
-def test_one_that_was_stopped_goes_on_and_ends_with_the_same_bytes(
-    evaluation: CostEvaluation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_what_is_known_is_not_run_again_and_the_record_tells_what_the_costs_depend_on(
+    evaluation, tmp_path, monkeypatch
 ) -> None:
-    whole = searched(evaluation, tmp_path / "whole")
-    with monkeypatch.context() as patch:
-        patch.setattr(Search, "__init__", _stopping(Search.__init__, after=5))
-        with pytest.raises(KeyboardInterrupt):
-            searched(evaluation, tmp_path / "stopped")
-    part = (tmp_path / "stopped" / EVALUATIONS).read_bytes()
-    assert part.count(b"\n") == 1 + 5
-    assert searched(evaluation, tmp_path / "stopped") == whole
-    complete = (tmp_path / "stopped" / EVALUATIONS).read_bytes()
-    assert complete == (tmp_path / "whole" / EVALUATIONS).read_bytes()
-    assert complete.startswith(part)
-
-
-def _stopping(begin, after):
-    def started(self, space, costs_of, seed, known, note):
-        def stop(count):
-            note(count)
-            if count == after:
-                raise KeyboardInterrupt
-
-        begin(self, space, costs_of, seed, known, stop)
-
-    return started
-
-
-def test_what_is_known_is_not_run_again(
-    evaluation: CostEvaluation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    before = searched(evaluation, tmp_path)
-    monkeypatch.setattr(CostEvaluation, "measured", lambda *_: pytest.fail("a run"))
-    assert searched(evaluation, tmp_path) == before
-
-
-@pytest.mark.slow
-def test_another_search_is_replaced_only_if_asked(evaluation: CostEvaluation, tmp_path: Path) -> None:
-    searched(evaluation, tmp_path, count=3)
-    before = (tmp_path / EVALUATIONS).read_bytes()
-    with pytest.raises(DrivelineError, match=r"is of another run \(seed: 1 there, 2 here\)"):
-        searched(evaluation, tmp_path, count=3, seed=2)
-    assert (tmp_path / EVALUATIONS).read_bytes() == before
-    anew = searched(evaluation, tmp_path, count=3, seed=2, replace=True)
-    assert (tmp_path / EVALUATIONS).read_bytes().count(b"\n") == 1 + len(anew) == 4
-
-
-def test_the_record_tells_what_the_costs_depend_on(evaluation: CostEvaluation, tmp_path: Path) -> None:
     searched(evaluation, tmp_path, count=1)
     run = json.loads((tmp_path / RECORD).read_text())["run"]
     assert run["controller"] == "DampingController"
@@ -96,6 +44,9 @@ def test_the_record_tells_what_the_costs_depend_on(evaluation: CostEvaluation, t
     assert run["computed"]["lambda_v"] == 0.913
     assert run["reference"]["k_T"] == 0.003
     assert {"TwoMassDriveline", "ValidationVehicle", "DampingController"} <= run["fmus"].keys()
+    before = searched(evaluation, tmp_path)
+    monkeypatch.setattr(CostEvaluation, "measured", lambda *_: pytest.fail("a run"))
+    assert searched(evaluation, tmp_path) == before
 
 
 def test_costs_come_back_from_the_file_to_the_last_bit(tmp_path: Path) -> None:
@@ -124,3 +75,29 @@ def test_a_file_that_is_none_of_a_search_is_refused(tmp_path: Path, text: str, m
     path.write_text(text)
     with pytest.raises(DrivelineError, match=message):
         CaseArchive(path, table(["k", "T"]))
+
+
+SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0), Run("ValidationVehicle", "launch", NOMINAL, 2, 1.0))
+SOFT, HARD = {"k_d": 1.5}, {"k_d": 3.0}
+
+
+@pytest.fixture
+def evaluation(native: Path) -> CostEvaluation:
+    return CostEvaluation(Settings(folder=native.parent), runs=SHORT)
+
+
+def test_the_designed_gains_of_a_car_cost_one_others_more_and_one_that_is_refused_is_named(
+    evaluation: CostEvaluation, native: Path
+) -> None:
+    with evaluation.opened(workers=1) as costs_of:
+        designed, soft = costs_of([evaluation.reference(), SOFT])
+    assert designed == (1.0, 1.0, 1.0)
+    assert soft.total() > 1.1
+    car = {"J_1": 0.09, "C": 210.0}
+    evaluation = CostEvaluation(Settings(folder=native.parent), car, runs=SHORT[:1])
+    assert evaluation.reference()["k_d"] != pytest.approx(CostEvaluation().reference()["k_d"], rel=0.1)
+    with evaluation.opened(workers=1) as costs_of:
+        assert next(costs_of([evaluation.reference()])) == (1.0, 1.0, 1.0)
+        assert next(costs_of([CostEvaluation().reference()])).total() != pytest.approx(1.0, abs=0.01)
+    with evaluation.opened(workers=1) as costs_of, pytest.raises(SimulationError, match=r"tipin15 on .* k_d = -1"):
+        next(costs_of([{"k_d": -1.0}]))

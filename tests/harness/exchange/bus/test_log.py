@@ -54,40 +54,30 @@ def test_python_can_and_cantools_find_what_the_controller_received(log: Path, re
     assert [content["Wheel_Speed_Valid"] for content in contents] == results["can.valid"][rows].astype(int).tolist()
     assert [content["Wheel_Speed_Counter"] for content in contents] == (results["can.counter"][rows] % 256).tolist()
     assert {content["Wheel_Speed_Valid"] for content in contents} == {0, 1}
+    before = log.read_bytes()
+    write_log(telegrams({}), results, log)
+    assert log.read_bytes() == before
 
 
 def test_what_motor_control_says_is_in_the_log_at_every_cycle_to_single_precision(log: Path, results) -> None:
     channels = Channels(log, databases=[log.with_suffix(".dbc")]).read("T_mot", "omega_1", "T_ref")
-    for quantity, column in {
-        "T_mot": "motor.T_mot_est",
-        "omega_1": "motor.omega_1_meas",
-        "T_ref": "controller.T_ref",
-    }.items():
+    columns = {"T_mot": "motor.T_mot_est", "omega_1": "motor.omega_1_meas", "T_ref": "controller.T_ref"}
+    for quantity, column in columns.items():
         np.testing.assert_allclose(channels[quantity].time, results["time"][::2], atol=RESOLUTION[log.suffix[1:]])
         np.testing.assert_array_equal(channels[quantity].values, results[column][::2].astype(np.float32))
 
 
-def test_the_log_is_read_as_a_drive_whose_speed_is_that_of_the_wheels(log: Path, results) -> None:
+def test_the_log_is_read_as_a_drive_with_the_speed_of_the_wheels_and_as_a_measurement(log, results) -> None:
     drive = read_drive(log, databases=[log.with_suffix(".dbc")])
     rows = arrivals(results)
     last = rows[np.searchsorted(results["time"][rows], drive.time + 1e-6) - 1]
     np.testing.assert_allclose(drive.v, results["can.omega_2_can"][last] * P.r / P.i, rtol=1e-12, atol=1e-12)
     assert drive.elevation is None
-
-
-def test_the_log_is_read_as_a_measurement(log: Path, results) -> None:
     found = read_measurement(log, P.i, P.r, databases=[log.with_suffix(".dbc")])
     assert found.valid is not None
     assert {*found.valid.tolist()} == {False, True}
     assert found.T_ref is not None
     assert found.T_load is None
-
-
-def test_the_same_run_gives_the_same_bytes(results, log: Path, tmp_path: Path) -> None:
-    again = tmp_path / log.name
-    write_log(telegrams({}), results, again)
-    assert again.read_bytes() == log.read_bytes()
-    assert list(tmp_path.iterdir()) == [again]
 
 
 def test_a_gain_error_of_the_receiver_is_not_on_the_bus(results, tmp_path: Path) -> None:
@@ -115,7 +105,9 @@ def test_a_run_is_logged_and_replayed(native, tmp_path: Path, form: str, capsys:
     assert (tmp_path / f"{stem.name}_DampingController.csv").is_file()
 
 
-def test_the_frames_of_a_test_drive_are_written_beside_it(native, tmp_path: Path) -> None:
+def test_frames_of_a_test_drive_are_written_beside_it_but_none_for_a_bus_of_somebody_else(
+    native, tmp_path, capsys
+) -> None:
     options = ["--fmus", str(native.parent), "--output", str(tmp_path), "--quiet"]
     assert main(["record", "--duration", "4", "--frames", "blf", *options]) == 0
     stem = tmp_path / "TwoMassDriveline_prbs_off"
@@ -125,11 +117,6 @@ def test_the_frames_of_a_test_drive_are_written_beside_it(native, tmp_path: Path
     np.testing.assert_allclose(found.omega_1, other.omega_1[shared], atol=1e-4)
     # the speed is that of the wheels times i in both: over ground on the bus, of the wheels in the table
     np.testing.assert_allclose(found.omega_2, other.omega_2[shared], atol=1e-4)
-
-
-def test_a_bus_of_somebody_else_has_no_frames_of_ours(
-    native, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
     theirs = tmp_path / "theirs.fmu"
     theirs.write_bytes((native / "WheelSpeedCan.fmu").read_bytes())
     options = ["--can", str(theirs), "--fmus", str(native.parent), "--output", str(tmp_path / "out")]

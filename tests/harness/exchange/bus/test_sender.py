@@ -40,12 +40,19 @@ def received(node: Node) -> float:
     return node.fmu.getFloat64([node.references["omega_2_can"]])[0]
 
 
-def test_its_frames_are_those_of_the_log_of_the_same_run(sender: Path, results: Any, tmp_path: Path) -> None:
+def test_its_frames_are_those_of_the_log_and_its_database_stays_true(
+    sender: Path, results: Any, tmp_path: Path
+) -> None:
     expected = list(frames(*of_wheel_speed({}), results))
     found = fed(Node(sender, tmp_path), results)
     assert [frame[1:] for frame in found] == [frame[1:] for frame in expected]
     assert [frame[0] for frame in found] == pytest.approx([frame[0] for frame in expected], abs=1e-9)
     assert len(found) > 100
+    with zipfile.ZipFile(sender) as archive:
+        assert archive.read(f"{FOLDER}/{TERMINAL}.dbc") == sender.with_name("driveline.dbc").read_bytes()
+    node = Node(sender, tmp_path)
+    last = of_wheel_speed({})[1].decode(fed(node, results, q_v=0.001)[-1][2])
+    assert last["Wheel_Speed"] == pytest.approx(3.6 * received(node) * P.r / P.i, abs=0.03125 / 2)
 
 
 def test_a_car_with_other_wheels_and_a_finer_bus_has_its_own_layout(results: Any, tmp_path: Path) -> None:
@@ -62,31 +69,7 @@ def test_a_car_with_other_wheels_and_a_finer_bus_has_its_own_layout(results: Any
     assert last["Wheel_Speed"] == pytest.approx(3.6 * received(node) * 0.35 / P.i, rel=1e-9)
 
 
-def test_a_resolution_set_in_the_fmu_leaves_its_database_true(sender: Path, results: Any, tmp_path: Path) -> None:
-    node = Node(sender, tmp_path)
-    last = of_wheel_speed({})[1].decode(fed(node, results, q_v=0.001)[-1][2])
-    assert last["Wheel_Speed"] == pytest.approx(3.6 * received(node) * P.r / P.i, abs=0.03125 / 2)
-
-
-def test_the_database_in_it_is_the_one_beside_it(sender: Path) -> None:
-    with zipfile.ZipFile(sender) as archive:
-        assert archive.read(f"{FOLDER}/{TERMINAL}.dbc") == sender.with_name("driveline.dbc").read_bytes()
-
-
-@pytest.mark.usefixtures("uncached_compiler")
-@pytest.mark.slow
-def test_the_same_car_gives_the_same_bytes(sender: Path, tmp_path: Path) -> None:
-    assert main(["bus", "--fmu", "--output", str(tmp_path), "--quiet"]) == 0
-    assert (tmp_path / sender.name).read_bytes() == sender.read_bytes()
-
-
-def test_the_compliance_checks_find_nothing(sender: Path) -> None:
-    assert main(["check", str(sender), "--strict", "--quiet"]) == 0
-
-
-def test_without_a_compiler_nothing_is_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_without_a_compiler_nothing_is_written(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.setenv("CC", "no-such-compiler")
     assert main(["bus", "--fmu", "--output", str(tmp_path)]) != 0
     assert "there is no C compiler" in capsys.readouterr().err

@@ -37,6 +37,18 @@ def file_findings(path):
     return "\n".join(problem for verdict in verdicts for problem in verdict.problems)
 
 
+def broken(path, **options):
+    """Rule, severity and what was found, of each rule that is broken."""
+    return {v.rule: (v.severity, "\n".join(v.problems)) for v in check(path, **options) if v.problems}
+
+
+def replaced(path, folder, pattern, replacement):
+    """An FMU whose description has something else in the place of the first match."""
+    return tampered(
+        path, folder / "faulty.fmu", lambda xml: re.sub(pattern, replacement, xml, count=1, flags=re.DOTALL)
+    )
+
+
 OURS = [PLANT, "ValidationVehicle.fmu", "MotorTorqueLoop.fmu", "WheelSpeedCan.fmu", "DampingController.fmu"]
 
 
@@ -54,13 +66,10 @@ def sender(tmp_path_factory):
     return build(FMUS["WheelSpeedCan"], tmp_path_factory.mktemp("sender"))
 
 
-def test_an_fmu_with_clocks_is_run_in_event_mode(sender):
+def test_an_fmu_with_clocks_is_run_in_event_mode_or_it_is_said_that_it_was_not(sender, tmp_path):
     verdicts = list(check(sender))
     assert [v for v in verdicts if v.problems] == []
     assert {v.rule for v in verdicts if v.tried} >= {rule.name for rule in BEHAVIOUR_RULES}
-
-
-def test_without_event_mode_it_is_said_that_it_was_not_run(sender, tmp_path):
     path = tampered(sender, tmp_path / "no.fmu", lambda xml: xml.replace('hasEventMode="true"', 'hasEventMode="false"'))
     verdicts = {v.rule: v for v in check(path)}
     assert verdicts["kind"].problems == ["it has clocks, but no event mode, so it was not run in co-simulation"]
@@ -104,11 +113,7 @@ IN_BOTH = (
     ],
 )
 def test_a_fault_in_the_description_is_found(built, tmp_path, pattern, replacement, finding):
-    def change(xml):
-        return re.sub(pattern, replacement, xml, count=1, flags=re.DOTALL)
-
-    faulty = tampered(built / PLANT, tmp_path / "faulty.fmu", change)
-    assert re.search(finding, file_findings(faulty))
+    assert re.search(finding, file_findings(replaced(built / PLANT, tmp_path, pattern, replacement)))
 
 
 @pytest.mark.parametrize(
@@ -130,33 +135,26 @@ def test_a_fault_in_the_description_is_found(built, tmp_path, pattern, replaceme
     ],
 )
 def test_a_fault_in_the_description_of_fmi_3_is_found(fmi3, tmp_path, pattern, replacement, finding):
-    def change(xml):
-        return re.sub(pattern, replacement, xml, count=1, flags=re.DOTALL)
-
-    assert re.search(finding, file_findings(tampered(fmi3 / PLANT, tmp_path / "faulty.fmu", change)))
+    assert re.search(finding, file_findings(replaced(fmi3 / PLANT, tmp_path, pattern, replacement)))
 
 
 @pytest.mark.parametrize(
     ("path", "finding"),
     [
-        ("resources\\model.txt", "backslash"),
+        ("resources\\model.txt", "has a backslash in its path"),
         ("resources/__pycache__/model.pyc", "leftover"),
         ("../escape.txt", "leaves the folder"),
+        ("LICENSE.txt", "documentation/index.html is missing"),
+        ("LICENSE.txt", "model.png or documentation/diagram.png is missing"),
     ],
 )
-def test_a_fault_in_the_archive_is_found(built, tmp_path, path, finding):
-    faulty = tampered(built / PLANT, tmp_path / "faulty.fmu", str, **{path: b"x"})
-    assert finding in file_findings(faulty)
-
-
-def test_missing_pages_are_found(built, tmp_path):
-    with ZipFile(built / PLANT) as source, ZipFile(tmp_path / "bare.fmu", "w") as target:
+def test_faults_in_the_archive_and_missing_pages_are_found(built, tmp_path, path, finding):
+    with ZipFile(built / PLANT) as source, ZipFile(tmp_path / "faulty.fmu", "w") as target:
         for name in source.namelist():
             if not name.startswith("documentation/") and name != "model.png":
                 target.writestr(name, source.read(name))
-    found = file_findings(tmp_path / "bare.fmu")
-    assert "documentation/index.html is missing" in found
-    assert "model.png or documentation/diagram.png is missing" in found
+        target.writestr(path, b"x")
+    assert finding in file_findings(tmp_path / "faulty.fmu")
 
 
 FAULTS = {
@@ -189,22 +187,15 @@ def test_a_fault_in_the_behaviour_is_found_and_leaves_nothing_behind(tmp_path, f
 @pytest.mark.parametrize("build", ["native", "fmi3"])
 @pytest.mark.slow
 def test_a_parameter_that_is_called_tunable_and_is_fixed_is_found(request, tmp_path, build):
-    faulty = tampered(
-        request.getfixturevalue(build) / "MotorTorqueLoop.fmu",
-        tmp_path / "faulty.fmu",
-        lambda xml: re.sub(r'(name="tau".*?variability=)"fixed"', r'\1"tunable"', xml),
-    )
-    (found,) = findings(faulty)
+    motor = request.getfixturevalue(build) / "MotorTorqueLoop.fmu"
+    (found,) = findings(replaced(motor, tmp_path, r'(name="tau"[^\n]*?variability=)"fixed"', r'\1"tunable"'))
     assert re.search(r"tau is called tunable, and is not: .*tau = 0.003 is refused; a fixed parameter can be", found)
 
 
 def test_a_binary_that_is_not_there_is_found(tmp_path):
-    faulty = tampered(
-        build_relay(tmp_path),
-        tmp_path / "faulty.fmu",
-        lambda xml: xml.replace('modelIdentifier="Relay"', 'modelIdentifier="Other"'),
+    verdicts = list(
+        check(replaced(build_relay(tmp_path), tmp_path, 'modelIdentifier="Relay"', 'modelIdentifier="Other"'))
     )
-    verdicts = list(check(faulty))
     (found,) = [verdict for verdict in verdicts if "cannot be instantiated" in "".join(verdict.problems)]
     assert (found.rule, found.tried) == ("runs", True)
     assert {verdict.rule for verdict in verdicts if not verdict.tried} == {
@@ -214,30 +205,20 @@ def test_a_binary_that_is_not_there_is_found(tmp_path):
 
 @pytest.mark.parametrize("stop", ["1e300", "-1"])
 def test_any_default_experiment_is_tried(tmp_path, stop):
-    def change(xml):
-        return xml.replace('stopTime="0.2" stepSize="0.001"', f'stopTime="{stop}" stepSize="1e-20"')
-
-    assert "runs" not in broken(tampered(build_stranger(tmp_path), tmp_path / "odd.fmu", change), quick=True)
+    old, new = 'stopTime="0.2" stepSize="0.001"', f'stopTime="{stop}" stepSize="1e-20"'
+    assert "runs" not in broken(replaced(build_stranger(tmp_path), tmp_path, old, new), quick=True)
 
 
-def test_whatever_goes_wrong_in_a_rule_is_a_finding(tmp_path, monkeypatch):
-    rule = Rule("odd", Severity.ERROR, "an error that nobody foresees", problems=os.listdir)
-    monkeypatch.setattr("driveline.harness.exchange.compliance.check.QUICK_RULES", (rule,))
-    severity, text = broken(build_stranger(tmp_path), quick=True)["odd"]
-    assert (severity, text.partition(",")[0]) == ("error", "cannot be tried: TypeError: listdir: path should be string")
-
-
-def test_what_cannot_be_read_gets_one_finding(tmp_path):
+def test_what_cannot_be_read_or_tried_is_a_finding(tmp_path, monkeypatch):
     path = tmp_path / "text.fmu"
     path.write_text("no archive")
     assert len(findings(path)) == 1
     with pytest.raises(DrivelineError, match="there is no FMU"):
         findings(tmp_path / "none.fmu")
-
-
-def broken(path, **options):
-    """Rule, severity and what was found, of each rule that is broken."""
-    return {v.rule: (v.severity, "\n".join(v.problems)) for v in check(path, **options) if v.problems}
+    rule = Rule("odd", Severity.ERROR, "an error that nobody foresees", problems=os.listdir)
+    monkeypatch.setattr("driveline.harness.exchange.compliance.check.QUICK_RULES", (rule,))
+    severity, text = broken(build_stranger(tmp_path), quick=True)["odd"]
+    assert (severity, text.partition(",")[0]) == ("error", "cannot be tried: TypeError: listdir: path should be string")
 
 
 @pytest.mark.parametrize("kind", HOSTILE)
@@ -303,50 +284,33 @@ def test_an_end_that_the_fmu_wants_is_no_error(tmp_path, fmi):
     assert f"answered fmi{fmi}DoStep with discard" in broken(build_stranger(tmp_path, fmi=fmi, **ENDS))["runs"][1]
 
 
-def test_memory_of_the_host_that_is_kept_is_found(tmp_path):
+def test_memory_that_is_kept_or_shared_is_found(tmp_path):
     keeps = "((void *(*)(size_t, size_t))((void **)callbacks)[1])(1, 8)"
     found = broken(build_stranger(tmp_path, IN_INSTANTIATE=keeps))["memory"]
     assert found == ("error", "1 blocks of memory are not given back by fmi2FreeInstance")
     assert "memory" not in broken(build_stranger(tmp_path, "clean"))
+    # They come from one file: an FMU is unpacked once for all that is tried.
+    path = build_stranger(tmp_path, IN_GET_REAL="values[5] = now")
+    assert "beside another instance, but was 0.0, at step 0" in broken(path)["instances"][1]
 
 
 @pytest.mark.slow
 def test_many_short_calls_are_not_one_that_hangs(tmp_path):
-    def change(xml):
-        return xml.replace('stopTime="0.2"', 'stopTime="0.02"')
-
-    path = tampered(build_stranger(tmp_path, IN_GET_REAL="usleep(30000)"), tmp_path / "slow.fmu", change)
+    stranger = build_stranger(tmp_path, IN_GET_REAL="usleep(30000)")
+    path = replaced(stranger, tmp_path, 'stopTime="0.2"', 'stopTime="0.02"')
     assert "runs" not in broken(path, quick=True, limits=Limits(call=0.3))
-
-
-def test_quick_makes_the_first_steps_alone(tmp_path):
-    later = build_stranger(tmp_path, IN_DO_STEP="if (time > 0.15) exit(0)", IN_RESET="exit(0)")
-    assert not {"runs", "reset"} & broken(later, quick=True).keys()
-    assert "runs" in broken(later)
-
-
-def test_instances_that_share_memory_are_found(tmp_path):
-    """They come from one file: an FMU is unpacked once for all that is tried."""
-    path = build_stranger(tmp_path, IN_GET_REAL="values[5] = now")
-    assert "beside another instance, but was 0.0, at step 0" in broken(path)["instances"][1]
 
 
 def test_what_is_not_tried_after_a_crash_is_said(tmp_path):
     path = build_stranger(tmp_path, IN_DO_STEP="exit(0)")
     names = {rule.name for rule in BEHAVIOUR_RULES} - {"runs", "reset"}
     verdicts = list(check(path, ignored=["reset"]))
+    severities = {verdict.rule: verdict.severity for verdict in verdicts if verdict.problems}
+    assert severities == {"archive-pages": "note", "dependencies": "note", "origin": "note", "runs": "error"}
     assert {verdict.rule for verdict in verdicts if not verdict.tried} == names
     (suite,) = ElementTree.fromstring(junit({"stranger.fmu": verdicts}, ["error"]))
     assert (suite.get("skipped"), suite.get("failures")) == (str(len(names)), "1")
     assert len(suite.findall("testcase/skipped")) == len(names)
-
-
-@pytest.mark.slow
-def test_an_ignored_rule_is_not_tried(tmp_path):
-    path = build_stranger(tmp_path, IN_DO_STEP="exit(0)")
-    severities = {rule: severity for rule, (severity, _) in broken(path).items()}
-    assert severities == {"archive-pages": "note", "dependencies": "note", "origin": "note", "runs": "error"}
-    assert "runs" not in broken(path, ignored=["runs"])
 
 
 def test_what_cannot_run_here_is_a_note_and_not_tried(tmp_path):
@@ -371,7 +335,10 @@ def test_an_fmu_of_sources_alone_is_legal_and_one_of_nothing_is_not(tmp_path):
         assert ("archive-binary" in broken(bare)) is finds
 
 
-def test_a_verdict_names_the_clause_of_the_standard(tmp_path):
-    clauses = {verdict.rule: verdict.clause for verdict in check(build_stranger(tmp_path), quick=True)}
-    assert clauses["runs"] == "FMI 2.0.4, 4.2.2; FMI 3.0.2, 4.2.1"
-    assert (clauses["aliases"], clauses["archive-leftover"]) == ("FMI 2.0.4, 2.2.7", "")
+def test_quick_makes_the_first_steps_alone_and_verdicts_name_the_clause_of_the_standard(tmp_path):
+    later = build_stranger(tmp_path, IN_DO_STEP="if (time > 0.15) exit(0)", IN_RESET="exit(0)")
+    verdicts = {verdict.rule: verdict for verdict in check(later, quick=True)}
+    assert not {"runs", "reset"} & {rule for rule, verdict in verdicts.items() if verdict.problems}
+    assert "runs" in broken(later)
+    assert verdicts["runs"].clause == "FMI 2.0.4, 4.2.2; FMI 3.0.2, 4.2.1"
+    assert (verdicts["aliases"].clause, verdicts["archive-leftover"].clause) == ("FMI 2.0.4, 2.2.7", "")

@@ -6,16 +6,10 @@ import numpy as np
 import pytest
 
 from benchmarks.ssp_hosts import PRESENT, run_in
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.master import Loop
-from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.system import Scheme
-from driveline.harness.cosimulation.wiring import fit
-from driveline.harness.exchange.ssp.loop_with_source import points, with_source
-from driveline.harness.loop.places import PLANTS, STEP_SIZE
-from driveline.harness.loop.settings import loop
+from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.simulate import simulate, start
+from driveline.harness.simulation.simulate import simulate
 from tests.foreign import build_car
 
 STEPS = 1200
@@ -81,20 +75,3 @@ def test_the_command_line_of_omsimulator_runs_it(packaged, fmus) -> None:
     ours = simulate(MANOEUVRES["tipin15"], scheme=Scheme.JACOBI, folder=fmus, build="native")["plant.T_gear"]
     theirs = run_in("OMSimulator", packaged(), PLANTS[0], 6000)["plant.T_gear"]
     assert theirs[-1] == pytest.approx(ours[-1], abs=0.05)
-
-
-@pytest.mark.parametrize("plant", PLANTS)
-@pytest.mark.slow
-def test_fmpy_gets_what_our_master_would_get_if_all_inputs_began_with_zero(packaged, fmus, plant, monkeypatch) -> None:
-    def zeros(self, wires, table) -> None:
-        data, row, known = table.view(np.uint8).data, wires.row, wires.layout.known
-        row[:] = bytes(len(row))
-        row[:known] = data[:known]
-
-    monkeypatch.setattr(Loop, "_propagate", zeros)
-    manoeuvre = MANOEUVRES["tipin15"]
-    system = with_source(loop(plant, folder=fmus, build="native"), fmus / "native" / "Manoeuvre.fmu")
-    given = start(manoeuvre) | points(manoeuvre, fit(system))
-    duration = STEPS * STEP_SIZE
-    ours = run(system, Experiment(duration, STEP_SIZE, {}, given, Scheme.JACOBI))
-    compare(run_in("FMPy", packaged(), plant, STEPS), ours, OUTPUTS)

@@ -55,7 +55,7 @@ def ends(connection: etree._Element) -> list[str]:
     return [f"{connection.get(f'{end}Element')}.{connection.get(f'{end}Connector')}" for end in ("start", "end")]
 
 
-def test_every_document_is_valid_by_the_schemas_of_the_standard(packaged) -> None:
+def test_every_document_is_valid_by_the_standard_and_an_old_unpacker_reads_the_archive(packaged) -> None:
     folder = Path(fmpy.ssp.__file__).parent / "schema"
     with zipfile.ZipFile(packaged()) as archive:
         documents = [name for name in archive.namelist() if Path(name).suffix in SCHEMAS]
@@ -63,26 +63,23 @@ def test_every_document_is_valid_by_the_schemas_of_the_standard(packaged) -> Non
         for name in documents:
             schema = etree.XMLSchema(file=folder / SCHEMAS[Path(name).suffix])
             schema.assertValid(etree.fromstring(archive.read(name)))
-
-
-def test_an_old_unpacker_can_read_the_archive(packaged) -> None:
     with zipfile.ZipFile(packaged()) as archive:
         assert archive.testzip() is None
         assert max(entry.extract_version for entry in archive.infolist()) <= 20
         assert all(name.isascii() and not name.startswith("/") for name in archive.namelist())
 
 
-def test_the_same_loop_is_the_same_bytes(packaged, fmus, tmp_path) -> None:
-    assert main(["ssp", "--fmus", str(fmus), "--output", str(tmp_path), "--quiet"]) == 0
-    assert (tmp_path / "driveline.ssp").read_bytes() == packaged().read_bytes()
-
-
-def test_each_plant_is_a_variant_and_the_first_one_the_default(packaged) -> None:
+def test_each_plant_is_a_variant_with_its_own_names_and_the_first_one_the_default(packaged, fmus, tmp_path) -> None:
     names = [parsed(packaged(), name).get("name") for name in SSDS]
     assert names == list(PLANTS)
     turned = packaged(*(option for plant in reversed(PLANTS) for option in ("--plant", plant)))
     assert parsed(turned, "SystemStructure.ssd").get("name") == "ValidationVehicle"
     assert parsed(turned, "TwoMassDriveline.ssd").get("name") == "TwoMassDriveline"
+    car = build_car(tmp_path / "car", T_gear=("Shaft.tau", "N.m", 1.0))
+    ssp = packaged("--plant", str(car), "--map", "plant.T_gear=Shaft.tau")
+    plant = next(c for c in parsed(ssp, SSDS[0]).iterfind(".//ssd:Component", NS) if c.get("name") == "plant")
+    assert plant.find(".//ssd:Connector[@name='Shaft.tau']", NS) is not None
+    assert plant.get("source") == f"resources/{car.name}"
 
 
 @pytest.mark.parametrize("name", SSDS)
@@ -166,16 +163,13 @@ def test_the_source_makes_the_signals_of_every_manoeuvre(packaged, name) -> None
     assert all(one.enable for one in made)
 
 
-def test_the_grip_of_the_road_is_a_parameter_of_the_plant(packaged) -> None:
-    ssp = packaged("--manoeuvre", "launch_ice", "--plant", "ValidationVehicle")
-    assert values(ssp, "resources/ValidationVehicle.ssv")["plant.mu"] == 0.12
-
-
-def test_it_starts_and_ends_as_the_manoeuvre_does(packaged) -> None:
+def test_start_end_and_grip_of_the_road_are_those_of_the_manoeuvre(packaged) -> None:
     plant = values(packaged("--manoeuvre", "tipin50"), "resources/plant_TwoMassDriveline.ssv")
     assert (plant["v_0"], plant["T_0"]) == (MANOEUVRES["tipin50"].v_0, -12.0)
     experiment = parsed(packaged("--manoeuvre", "drive"), SSDS[0]).find("ssd:DefaultExperiment", NS)
     assert float(experiment.get("stopTime")) == MANOEUVRES["drive"].duration
+    ssp = packaged("--manoeuvre", "launch_ice", "--plant", "ValidationVehicle")
+    assert values(ssp, "resources/ValidationVehicle.ssv")["plant.mu"] == 0.12
 
 
 def test_in_the_picture_no_block_stands_on_another_and_lines_run_along_the_axes(packaged) -> None:
@@ -196,14 +190,6 @@ def test_in_the_picture_no_block_stands_on_another_and_lines_run_along_the_axes(
 def at(name: str) -> tuple[float, float]:
     box, place = BOXES[name.partition(".")[0]], PLACES[name]
     return box.x1 + place.x * (box.x2 - box.x1), box.y1 + place.y * (box.y2 - box.y1)
-
-
-def test_a_plant_of_somebody_else_has_its_own_names_there(fmus, packaged, tmp_path) -> None:
-    car = build_car(tmp_path / "car", T_gear=("Shaft.tau", "N.m", 1.0))
-    ssp = packaged("--plant", str(car), "--map", "plant.T_gear=Shaft.tau")
-    plant = next(c for c in parsed(ssp, SSDS[0]).iterfind(".//ssd:Component", NS) if c.get("name") == "plant")
-    assert plant.find(".//ssd:Connector[@name='Shaft.tau']", NS) is not None
-    assert plant.get("source") == f"resources/{car.name}"
 
 
 def refused(fmus, folder: Path, capsys, *options: str) -> str:
@@ -229,9 +215,12 @@ def test_other_units_are_converted_on_the_connections_and_in_the_parameters(fmus
         assert not [name for name in archive.namelist() if name.endswith(".msim")]
 
 
-def test_fmi_3_is_refused_as_ssp_1_does_not_know_it(fmus, fmi3, tmp_path, capsys) -> None:
+def test_fmi_3_is_refused_and_a_change_in_a_run_before_fmus_are_looked_for(fmus, fmi3, tmp_path, capsys) -> None:
     message = refused(fmus, tmp_path / "out", capsys, "--plant", str(fmi3 / "TwoMassDriveline.fmu"))
     assert message.endswith("plant: TwoMassDriveline.fmu is of FMI 3.0; allowed in SSP 1.0 is FMI 2.0\n")
+    assert main(["ssp", "--fmus", str(tmp_path), "--set", "controller.k_d@2=1"]) == 2
+    message = "driveline ssp: controller.k_d@2: the parameters of an SSP have one value from the start on\n"
+    assert capsys.readouterr().err == message
 
 
 def held(count: int, *levels: float) -> Held:
@@ -267,18 +256,15 @@ def test_more_points_than_the_source_has_are_refused(fmus, tmp_path, capsys, cou
         assert "zigzag: its lines have 65 points; other tools are given at most 64" in message
 
 
-def test_a_change_in_a_run_is_refused_before_fmus_are_looked_for(tmp_path, capsys) -> None:
-    assert main(["ssp", "--fmus", str(tmp_path), "--set", "controller.k_d@2=1"]) == 2
-    message = "driveline ssp: controller.k_d@2: the parameters of an SSP have one value from the start on\n"
-    assert capsys.readouterr().err == message
-
-
-def test_a_package_of_another_loop_stays_without_replace(fmus, tmp_path, capsys) -> None:
+def test_a_package_of_another_loop_stays_without_replace(packaged, fmus, tmp_path, capsys) -> None:
     options = ["ssp", "--fmus", str(fmus), "--output", str(tmp_path), "--quiet"]
     assert main(options) == 0
     before = (tmp_path / "driveline.ssp").read_bytes()
-    assert main([*options, "--manoeuvre", "launch"]) == 2
-    assert "is of another run (" in capsys.readouterr().err
+    assert before == packaged().read_bytes(), "the same loop"
+    turned = ["--plant", PLANTS[1], "--plant", PLANTS[0]]
+    for other, what in ((["--manoeuvre", "launch"], ""), (turned, "plants: ")):
+        assert main([*options, *other]) == 2
+        assert f"is of another run ({what}" in capsys.readouterr().err
     assert (tmp_path / "driveline.ssp").read_bytes() == before
     assert main([*options, "--manoeuvre", "launch", "--replace"]) == 0
     assert (tmp_path / "driveline.ssp").read_bytes() != before
@@ -295,11 +281,3 @@ def test_the_project_of_mastersim_names_what_is_in_the_package(packaged) -> None
             assert {f"../../{entry}" for entry in archive.namelist()} >= set(fmus)
             assert len(fmus) == len(BOXES)
             assert f"parameter plant.v_0 {MANOEUVRES['tipin15'].v_0!r}\n" in text
-
-
-def test_another_default_variant_is_another_package(packaged, fmus, capsys) -> None:
-    folder = packaged("--plant", PLANTS[0], "--plant", PLANTS[1]).parent
-    same = ["ssp", "--fmus", str(fmus), "--output", str(folder), "--quiet"]
-    assert main([*same, "--plant", PLANTS[0], "--plant", PLANTS[1]]) == 0
-    assert main([*same, "--plant", PLANTS[1], "--plant", PLANTS[0]]) == 2
-    assert "is of another run (plants: " in capsys.readouterr().err

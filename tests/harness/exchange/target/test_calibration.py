@@ -47,23 +47,13 @@ def test_everything_that_is_declared_is_described_with_unit_limits_and_meaning(m
 
 def test_the_words_of_the_status_are_those_of_the_declaration(module: Any) -> None:
     status, cause = module.COMPU_VTAB
-    assert [pair.OutVal.Value for pair in cause.InValOutVal] == [
-        "none",
-        "speed_range",
-        "speed_jump",
-        "speed_frozen",
-        "torque_implausible",
-        "wheel_contradicts",
-        "wrong_direction",
-        "wrong_launch",
-        "feeds_oscillation",
-    ]
-    assert [pair.OutVal.Value for pair in status.InValOutVal] == [
-        "off",
-        "damping_with_wheel_speed",
-        "damping_without_wheel_speed",
-        "fallback",
-    ]
+    causes = (
+        "none speed_range speed_jump speed_frozen torque_implausible wheel_contradicts wrong_direction wrong_launch"
+        " feeds_oscillation"
+    )
+    assert [pair.OutVal.Value for pair in cause.InValOutVal] == causes.split()
+    statuses = "off damping_with_wheel_speed damping_without_wheel_speed fallback"
+    assert [pair.OutVal.Value for pair in status.InValOutVal] == statuses.split()
 
 
 def addresses(module: Any) -> Mapping[str, int]:
@@ -117,9 +107,7 @@ def simulated(remote: Remote, p: Any, once_started: Callable[[], object] = lambd
     return found
 
 
-def test_a_value_that_is_changed_by_its_address_acts_in_the_loop_as_one_that_is_set(
-    module: Any, target: Programs
-) -> None:
+def test_a_value_that_is_changed_by_its_address_acts_in_the_loop_as_one_that_is_set(module, target) -> None:
     p, address = BLOCK.Parameters(), addresses(module)["k_d"]
     remotes = [Remote(BLOCK, target.image) for _ in range(3)]
 

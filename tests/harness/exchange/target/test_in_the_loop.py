@@ -46,9 +46,7 @@ def emulators(folder: Path) -> set[int]:
 
 @pytest.mark.parametrize("scheme", Scheme)
 @pytest.mark.parametrize("plant", ["TwoMassDriveline", "ValidationVehicle"])
-def test_the_loop_gives_what_the_same_c_gives_off_line(
-    scheme: Scheme, plant: str, on_target: Path, target: Programs, both_built: Path
-) -> None:
+def test_the_loop_gives_what_the_same_c_gives_off_line(scheme, plant, on_target, target, both_built) -> None:
     results = at_samples(simulated(on_target, both_built, plant=plant, scheme=scheme))
     sources = {name: name for name in signals(TIPIN)} | {to: source for source, to, _ in CONNECTIONS}
     free = {f"controller.{name}": value for name, value in BLOCK.Input()._asdict().items()}
@@ -62,12 +60,9 @@ def test_the_loop_gives_what_the_same_c_gives_off_line(
     assert np.ptp(results["controller.T_ref"]) > 50.0
 
 
-def test_a_parameter_of_the_loop_reaches_the_target(on_target: Path, both_built: Path) -> None:
+def test_parameters_and_the_switch_of_the_loop_reach_the_target(on_target: Path, both_built: Path) -> None:
     limited = simulated(on_target, both_built, parameters={"controller.T_max": 40.0})
     assert limited["controller.T_ref"].max() == 40.0
-
-
-def test_off_is_off(on_target: Path, both_built: Path) -> None:
     results = at_samples(simulated(on_target, both_built, control=False))
     demand = results["controller.T_driver"][:-1].astype(np.float32)
     np.testing.assert_array_equal(results["controller.T_ref"][1:], demand)
@@ -91,9 +86,7 @@ SIGNALS = {signal.SIGKILL: "was lost: ended by SIGKILL", signal.SIGSTOP: "hangs:
 
 
 @pytest.mark.parametrize("number", SIGNALS)
-def test_a_target_that_is_lost_or_hangs_is_named_and_nothing_is_left(
-    number: signal.Signals, on_target: Path, both_built: Path, unpacked: Path
-) -> None:
+def test_a_target_that_is_lost_or_hangs_is_named_and_nothing_is_left(number, on_target, both_built, unpacked) -> None:
     sent = []
 
     def disturb() -> None:

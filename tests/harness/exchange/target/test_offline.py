@@ -47,11 +47,13 @@ def test_in_a_manoeuvre_no_bit_differs_and_the_torque_is_that_of_the_model(brake
     assert braked.differing == 0
     assert 0.0 < braked.margin <= 1.0
     assert braked.largest > 100.0
+    table = signals(braked)
+    assert table.dtype.names == ("time", *INPUTS, "target.T_ref", "model.T_ref")
+    assert table["time"][-1] == pytest.approx(10.0)
+    np.testing.assert_array_equal(table["model.T_ref"], braked.traces[1])
 
 
-def test_absurd_inputs_and_states_from_anywhere_change_no_bit_either(
-    target: Programs, launch_brake: Case, braked: Comparison
-) -> None:
+def test_absurd_inputs_and_states_from_anywhere_change_no_bit_either(target, launch_brake, braked) -> None:
     random, absurd = random_inputs([launch_brake], seed=1, samples=FEW)
     assert np.isnan(absurd.inputs).any()
     assert np.isinf(absurd.inputs).any()
@@ -63,10 +65,16 @@ def test_absurd_inputs_and_states_from_anywhere_change_no_bit_either(
         assert found.largest <= BLOCK.Parameters().T_max
 
 
-def test_the_same_seed_draws_the_same_case(launch_brake: Case) -> None:
+def test_the_same_seed_draws_the_same_case_and_instructions_are_the_same_every_time(
+    launch_brake: Case, target: Programs
+) -> None:
     one, same, other = (list(random_inputs([launch_brake], seed))[1].inputs for seed in (1, 1, 2))
     assert len(one) == SAMPLES
     assert one.tobytes() == same.tobytes() != other.tobytes()
+    short = launch_brake._replace(inputs=launch_brake.inputs[:300])
+    counts = [[answer.count for answer in responses(target.target(), short)] for _ in range(2)]
+    assert counts[0] == counts[1]
+    assert 500 < min(counts[0][1:]) <= max(counts[0]) < 900
 
 
 def test_a_bit_that_differs_is_seen(target: Programs, launch_brake: Case, size: Size) -> None:
@@ -95,23 +103,13 @@ def test_parameters_that_are_set_in_the_running_target_act(target: Programs, lau
     assert max(answer.outputs[0] for answer in responses(target.target(), launch_brake)) > 100.0
 
 
-def test_the_counted_instructions_are_the_same_every_time(target: Programs, launch_brake: Case) -> None:
-    short = launch_brake._replace(inputs=launch_brake.inputs[:300])
-    counts = [[answer.count for answer in responses(target.target(), short)] for _ in range(2)]
-    assert counts[0] == counts[1]
-    assert 500 < min(counts[0][1:]) <= max(counts[0]) < 900
-
-
-def test_the_stack_that_is_used_is_that_of_the_controller_and_a_caller(braked: Comparison, size: Size) -> None:
-    assert size.stack <= braked.stack <= size.stack + 32
-
-
-def test_flash_and_ram_are_those_of_the_records(size: Size) -> None:
+def test_flash_ram_and_stack_are_those_of_the_records_and_a_caller(size: Size, braked: Comparison) -> None:
     assert size.calibration == 4 * len(BLOCK.Parameters._fields)
     assert size.ram < 512
     assert size.stack <= 256
     assert 4000 < size.flash < 6000 < size.image < 8192
     assert size.library == ("memcpy", "memset")
+    assert size.stack <= braked.stack <= size.stack + 32
 
 
 def test_no_arithmetic_is_in_double_precision(target: Programs) -> None:
@@ -139,13 +137,6 @@ def test_the_numbers_are_those_that_were_found(braked: Comparison, size: Size, t
     files = write(found, tmp_path)
     assert [path.name for path in files] == [NUMBERS, "launch_brake.csv", "random_states.csv"]
     assert json.loads(files[0].read_text()) == json.loads(json.dumps(given))
-
-
-def test_a_recorded_case_has_inputs_and_both_torques(braked: Comparison) -> None:
-    table = signals(braked)
-    assert table.dtype.names == ("time", *INPUTS, "target.T_ref", "model.T_ref")
-    assert table["time"][-1] == pytest.approx(10.0)
-    np.testing.assert_array_equal(table["model.T_ref"], braked.traces[1])
 
 
 @pytest.mark.usefixtures("target")

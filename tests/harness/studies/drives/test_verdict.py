@@ -1,7 +1,6 @@
 """What `driveline replay` says of a recording that cannot be true, and that it says nothing of others."""
 
 import json
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -38,9 +37,7 @@ def given(native: Path, tmp_path: Path) -> list[str]:
 
 
 @pytest.mark.slow
-def test_it_is_said_on_stderr_and_marked_in_table_report_and_document(
-    turned: Path, given: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], caplog: Any
-) -> None:
+def test_it_is_said_on_stderr_and_marked_in_table_report_and_document(turned, given, tmp_path, capsys, caplog) -> None:
     report = tmp_path / "report.html"
     assert main(["replay", str(turned), *given, "--json", "--report", str(report)]) == 0
     document = json.loads(capsys.readouterr().out)
@@ -56,18 +53,14 @@ def test_it_is_said_on_stderr_and_marked_in_table_report_and_document(
     assert "Is the recording plausible?" in page
 
 
-def test_a_program_is_told_too_and_a_table_has_it_below(
-    turned: Path, native: Path, caplog: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_program_is_told_too_and_a_table_has_it_below(turned, native, caplog, capsys) -> None:
     rides = driveline.replay(driveline.read_drive(turned), folder=native.parent, build="native")
     assert [text for text in caplog.messages if text.startswith(f"turned: {PUSHES}")]
     print_rides({ride.controller: ride.metrics for ride in rides}, "turned", ["not plausible: x"])
     assert "\nnot plausible: x\n" in capsys.readouterr().out
 
 
-def test_strict_refuses_before_anything_is_run_or_written(
-    turned: Path, given: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_strict_refuses_before_anything_is_run_or_written(turned, given, tmp_path, capsys) -> None:
     for look in ([], ["--look"]):
         assert main(["replay", str(turned), *given, "--strict", *look]) == 2
         assert "turned.csv is not plausible (sign of torque), which --strict refuses" in capsys.readouterr().err
@@ -75,9 +68,7 @@ def test_strict_refuses_before_anything_is_run_or_written(
     assert main(["replay", str(turned), *given, "--strict", "--look", "--column", "T_mot=-Motor Torque [Nm]"]) == 0
 
 
-def test_a_look_runs_nothing_and_shows_what_was_read(
-    turned: Path, given: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], caplog: Any
-) -> None:
+def test_a_look_runs_nothing_and_shows_what_was_read(turned, given, tmp_path, capsys, caplog) -> None:
     assert main(["replay", str(turned), *given, "--look"]) == 0
     printed = capsys.readouterr().out
     for text in ("Velocity [km/h]", "km/h -> m/s", "Nm -> N.m", "80"):
@@ -95,38 +86,24 @@ def test_a_look_runs_nothing_and_shows_what_was_read(
     assert document["files"] == [str(tmp_path / "results" / "turned_look.svg")]
 
 
-def test_of_a_drive_that_is_true_a_look_finds_nothing(
-    given: list[str], capsys: pytest.CaptureFixture[str], caplog: Any
-) -> None:
+def test_of_a_drive_that_is_true_a_look_finds_nothing_and_it_has_no_report(given, capsys, caplog: Any) -> None:
     assert main(["replay", str(PATH), *given, "--look", "--strict"]) == 0
     assert "nothing is odd" in capsys.readouterr().out
     assert caplog.messages == []
-
-
-def test_there_is_no_report_of_a_look(turned: Path, given: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["replay", str(turned), *given, "--look", "--report", "page.html"]) == 2
+    assert main(["replay", str(PATH), *given, "--look", "--report", "page.html"]) == 2
     assert "--look runs nothing, so that there is nothing to --report" in capsys.readouterr().err
 
 
-def of_plants(native: Path) -> dict[str, Settings]:
-    return {plant: Settings(plant=plant, folder=native.parent, build="native") for plant in PLANTS}
-
-
 @pytest.mark.slow
-def test_nothing_is_odd_in_drives_of_our_own(native: Path) -> None:
+def test_nothing_is_odd_in_drives_of_our_own_and_they_are_followed(native: Path) -> None:
     """All manoeuvres on both plants, with and without damping, with cars and sensors that are drawn at random;
     `docs.studies.plausible_drives` has all 200."""
-    settings = of_plants(native)
+    settings = {plant: Settings(plant=plant, folder=native.parent, build="native") for plant in PLANTS}
     found: list[Judged] = [judged(case, damped, settings[case.plant], follow=False) for case, damped in cases(FEW)]
     assert [str(finding) for one in found for finding in one.findings] == []
     assert sum(one.balance.fits for one in found) > FEW / 2, "most are judged"
     assert sum(channel.named for one in found for channel in one.channels) == 0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("plant", PLANTS)
-def test_drives_of_our_own_are_followed(native: Path, plant: str) -> None:
-    one = partial(judged, settings=of_plants(native)[plant])
-    found = [one(case, damped) for case, damped in cases(26) if case.plant == plant][::3]
-    assert [str(finding) for each in found for finding in each.findings] == []
-    assert np.max([each.speed_error for each in found]) < 2.0 * CLOSE
+    for plant, made in settings.items():
+        driven = [judged(case, damped, made) for case, damped in cases(26) if case.plant == plant][::3]
+        assert [str(finding) for each in driven for finding in each.findings] == []
+        assert np.max([each.speed_error for each in driven]) < 2.0 * CLOSE

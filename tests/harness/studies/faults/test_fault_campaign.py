@@ -30,20 +30,21 @@ from tests.foreign import tampered
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
 
-def test_a_torque_that_is_off_by_thirty_percent_may_be_off_by_less_and_to_both_sides():
+def test_sizes_are_drawn_on_both_sides_and_nothing_goes_wrong_with_nothing():
     rng = np.random.default_rng(1)
     sizes = [KINDS["motor torque ±30 %"].size(rng) for _ in range(500)]
     assert 0.7 <= min(sizes) < 0.71
     assert 1.29 < max(sizes) <= 1.3
+    assert all(NOTHING not in pair for pair in PLANS["roads"].pairs)
 
 
-def test_a_case_follows_from_seed_and_number_alone():
+def test_cases_follow_from_seed_and_number_for_ever_and_half_are_pairs():
     assert case(7, 1, PLANTS) == case(7, 1, PLANTS)
     assert case(7, 2, PLANTS).faults != case(7, 1, PLANTS).faults
-
-
-def test_the_cases_on_dry_roads_are_those_of_the_first_campaign():
-    """Whatever other campaigns are drawn from: a page of years ago names them by number."""
+    pairs = [each for n in range(1, 201) if len((each := case(n, 1, PLANTS)).faults) == 2]
+    assert len(pairs) == 100
+    assert all(first.name != second.name for first, second in (each.faults for each in pairs))
+    # Whatever other campaigns are drawn from: a page of years ago names them by number.
     cases = "\n".join(str(astuple(case(n, 1, PLANTS))) for n in range(1, 1001))
     assert sha256(cases.encode()).hexdigest() == "079cd9bc6efedbd22c22c555c408375913fae96a56c832efc46dc65a8cf558fc"
 
@@ -67,10 +68,6 @@ def test_on_roads_half_of_the_faults_stay_and_frames_come_late():
     assert 0.07 < max(late) <= 0.1
 
 
-def test_nothing_goes_wrong_together_with_nothing():
-    assert all(NOTHING not in pair for pair in PLANS["roads"].pairs)
-
-
 def test_faults_and_states_are_numbered_as_in_the_models():
     """The harness knows no models, so it declares them."""
     signals_ = "MOTOR_SPEED", "MOTOR_TORQUE", "WHEEL_SPEED", "FRAME"
@@ -84,12 +81,6 @@ def test_faults_and_states_are_numbered_as_in_the_models():
 def test_plants_of_the_same_name_are_refused(tmp_path):
     with pytest.raises(DrivelineError, match="two plants are called car"):
         FaultRunner(tmp_path / "SignalFaults.fmu", {"mine/car.fmu": Settings(), "theirs/car.fmu": Settings()})
-
-
-def test_half_of_the_cases_are_pairs_of_different_kinds():
-    pairs = [each for n in range(1, 201) if len((each := case(n, 1, PLANTS)).faults) == 2]
-    assert len(pairs) == 100
-    assert all(first.name != second.name for first, second in (each.faults for each in pairs))
 
 
 @pytest.mark.parametrize("plant", PLANTS)

@@ -34,6 +34,14 @@ def between(start, end):
     return (start - 1e-9 <= T) & (end - 1e-9 > T)
 
 
+def with_(*changes):
+    """A quiet run but for columns that have values between two times in s."""
+    run = quiet()
+    for column, start, end, value in changes:
+        run[column][between(start, end)] = value
+    return run
+
+
 def clean(judge, run, healthy=None, undamped=None, kind="motor speed offset", end=END):
     """Whether a judge finds a run under a fault clean."""
     runs = Runs(run, quiet() if healthy is None else healthy, quiet() if undamped is None else undamped)
@@ -48,9 +56,7 @@ def test_a_quiet_run_is_clean():
 
 @pytest.mark.parametrize(("T_ref", "verdict"), [(-180.0, True), (180.1, False), (nan, False), (-inf, False)])
 def test_T_ref_is_finite_and_limited(T_ref, verdict):
-    run = quiet()
-    run["controller.T_ref"][700] = T_ref
-    assert clean("limited", run) == verdict
+    assert clean("limited", with_(("controller.T_ref", 1.4, 1.402, T_ref))) == verdict
 
 
 @pytest.mark.parametrize(
@@ -58,50 +64,36 @@ def test_T_ref_is_finite_and_limited(T_ref, verdict):
     [(50.0, 60.0, True), (50.0, 60.1, False), (50.0, -100.0, True), (50.0, -100.1, False), (0.0, -60.1, False)],
 )
 def test_more_may_be_taken_from_the_demand_than_added(T_driver, T_damp, verdict):
-    run = quiet()
-    run["controller.T_driver"] = T_driver
-    run["controller.T_damp"][700] = T_damp
+    run = with_(("controller.T_driver", 0.0, 5.0, T_driver), ("controller.T_damp", 1.4, 1.402, T_damp))
     assert clean("authority", run) == verdict
 
 
 @pytest.mark.parametrize(("error", "after", "verdict"), [(65.0, 0.05, True), (65.0, 0.052, False), (63.0, 0.5, True)])
 def test_a_motor_speed_that_is_wrong_by_more_than_40_rad_s_and_6_percent_is_noticed_within_50_ms(error, after, verdict):
-    run = quiet()
-    run["faults.omega_1_meas"][between(BEGIN, END)] += error
-    run["controller.status"][between(BEGIN + after, END)] = 4
+    run = with_(("faults.omega_1_meas", BEGIN, END, 400.0 + error), ("controller.status", BEGIN + after, END, 4))
     assert clean("noticed", run) == verdict
 
 
 @pytest.mark.parametrize(("after", "verdict"), [(0.11, True), (0.114, False)])
 def test_a_wheel_speed_that_becomes_known_is_heard_before_it_shows_that_the_motor_speed_is_wrong(after, verdict):
-    run = quiet()
-    run["faults.omega_1_meas"][between(0.0, END)] = 0.0
-    run["faults.valid"] = between(BEGIN, 5.0)
-    run["controller.status"][between(BEGIN + after, END)] = 4
-    assert clean("noticed", run) == verdict
+    wrong = ("faults.omega_1_meas", 0.0, END, 0.0), ("controller.status", BEGIN + after, END, 4)
+    assert clean("noticed", with_(*wrong, ("faults.valid", 0.0, BEGIN, False))) == verdict
 
 
 @pytest.mark.parametrize(("torque", "verdict"), [(359.9, True), (-359.9, True), (360.1, False), (-360.1, False)])
 def test_a_torque_estimate_of_more_than_twice_the_largest_torque_is_noticed(torque, verdict):
-    run = quiet()
-    run["faults.T_mot_est"][between(BEGIN, END)] = torque
+    assert clean("noticed", with_(("faults.T_mot_est", BEGIN, END, torque))) == verdict
+
+
+@pytest.mark.parametrize(("omega_1", "verdict"), [(0.0, True), (nan, False)])
+def test_without_a_good_message_a_wrong_motor_speed_need_not_be_noticed_but_no_number_must(omega_1, verdict):
+    run = with_(("faults.valid", 0.0, 5.0, False), ("faults.omega_1_meas", BEGIN, END, omega_1))
     assert clean("noticed", run) == verdict
-
-
-def test_without_a_good_message_a_wrong_motor_speed_need_not_be_noticed_but_no_number_must():
-    run = quiet()
-    run["faults.valid"] = False
-    run["faults.omega_1_meas"][between(BEGIN, END)] = 0.0
-    assert clean("noticed", run)
-    run["faults.omega_1_meas"][between(BEGIN, END)] = nan
-    assert not clean("noticed", run)
 
 
 @pytest.mark.parametrize(("after", "verdict"), [(0.15, True), (0.152, False)])
 def test_a_message_that_is_not_valid_does_not_count_for_long(after, verdict):
-    run = quiet()
-    run["faults.valid"][between(BEGIN, END)] = False
-    run["controller.status"][between(BEGIN + after, END)] = 3
+    run = with_(("faults.valid", BEGIN, END, False), ("controller.status", BEGIN + after, END, 3))
     assert clean("stale", run) == verdict
 
 
@@ -117,42 +109,34 @@ def test_a_message_that_is_not_valid_does_not_count_for_long(after, verdict):
     ],
 )
 def test_fallback_is_for_faults_of_motor_signals_alone_and_ends_with_them(kind, start, verdict):
-    run = quiet()
-    run["controller.status"][between(start, start + 0.002)] = 4
-    assert clean("false alarm", run, kind=kind) == verdict
+    assert clean("false alarm", with_(("controller.status", start, start + 0.002, 4)), kind=kind) == verdict
 
 
 @pytest.mark.parametrize(("drift", "verdict"), [(19.0, True), (21.0, False)])
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_nothing_tells_whether_motor_or_wheel_speed_is_wrong_that_drift_apart(side, drift, verdict):
     """But messages that leap are themselves to be doubted."""
-    run = quiet()
-    run["faults.omega_2_can"][between(BEGIN, END)] += 40.0 * side
-    run["faults.omega_2_can"][between(BEGIN + 0.02, END)] += drift * side
-    run["controller.status"][between(BEGIN + 0.02, END + 0.5)] = 4
+    wheels = "faults.omega_2_can"
+    leaps = (wheels, BEGIN, END, 400.0 + 40.0 * side), (wheels, BEGIN + 0.02, END, 400.0 + (40.0 + drift) * side)
+    run = with_(*leaps, ("controller.status", BEGIN + 0.02, END + 0.5, 4))
     assert clean("false alarm", run, kind="wheel speed offset") == verdict
 
 
 @pytest.mark.parametrize(("known", "verdict"), [(BEGIN, True), (0.0, False)])
 def test_messages_that_are_wrong_from_the_first_have_not_leapt(known, verdict):
-    run = quiet()
-    run["faults.valid"] = known - 1e-9 <= T
-    run["faults.omega_2_can"][between(BEGIN, END)] += 60.0
-    run["controller.status"][between(BEGIN, END + 0.5)] = 4
+    wrong = ("faults.omega_2_can", BEGIN, END, 460.0), ("controller.status", BEGIN, END + 0.5, 4)
+    run = with_(*wrong, ("faults.valid", 0.0, known, False))
     assert clean("false alarm", run, kind="wheel speed offset") == verdict
 
 
 @pytest.mark.parametrize(("omega_1", "verdict"), [(1999.0, False), (-1999.0, False), (2001.0, True), (-2001.0, True)])
 def test_a_motor_that_turns_faster_than_is_plausible_is_not_believed(omega_1, verdict):
-    run = quiet()
-    run["motor.omega_1_meas"][between(BEGIN, END)] = omega_1
-    run["controller.status"][between(BEGIN, END + 0.5)] = 4
+    run = with_(("motor.omega_1_meas", BEGIN, END, omega_1), ("controller.status", BEGIN, END + 0.5, 4))
     assert clean("false alarm", run, kind="wheel spin on ice") == verdict
 
 
 def test_it_need_not_be_back_while_the_motor_turns_too_fast():
-    run = quiet()
-    run["controller.status"][between(BEGIN, 3.0)] = 4
+    run = with_(("controller.status", BEGIN, 3.0, 4))
     assert not clean("back", run)
     run["motor.omega_1_meas"][between(BEGIN, 2.51)] = 2001.0
     assert clean("back", run)
@@ -161,16 +145,12 @@ def test_it_need_not_be_back_while_the_motor_turns_too_fast():
 @pytest.mark.parametrize("status", [3, 4])
 @pytest.mark.parametrize(("end", "verdict"), [(END + 0.5, True), (END + 0.502, False)])
 def test_everything_is_as_before_within_half_a_second(status, end, verdict):
-    run = quiet()
-    run["controller.status"][between(BEGIN, end)] = status
-    assert clean("back", run) == verdict
+    assert clean("back", with_(("controller.status", BEGIN, end, status))) == verdict
 
 
 @pytest.mark.parametrize(("T_damp", "verdict"), [(1.9, True), (2.1, False), (-2.1, False)])
 def test_no_kick_after_the_return(T_damp, verdict):
-    run = quiet()
-    run["controller.status"][between(BEGIN, END + 0.2)] = 4
-    run["controller.T_damp"][between(END + 0.25, END + 0.3)] = T_damp
+    run = with_(("controller.status", BEGIN, END + 0.2, 4), ("controller.T_damp", END + 0.25, END + 0.3, T_damp))
     assert clean("kick", run) == verdict
     run["plant.T_gear"][between(END + 0.1, END + 0.24)] = 0.2
     assert clean("kick", run)
@@ -178,9 +158,8 @@ def test_no_kick_after_the_return(T_damp, verdict):
 
 def test_a_wheel_speed_that_is_valid_one_message_later_than_without_the_fault_is_back_at_once():
     """The controller answers with the next sample."""
-    run = quiet()
-    run["can.valid"] = run["faults.valid"] = T > 2.3 - 1e-9
-    run["controller.status"][between(0.0, 2.302)] = 3
+    later = ("can.valid", 0.0, 2.3, False), ("faults.valid", 0.0, 2.3, False)
+    run = with_(*later, ("controller.status", 0.0, 2.302, 3))
     assert clean("back", run)
     run["controller.status"][between(0.0, 2.304)] = 3
     assert not clean("back", run)
@@ -188,11 +167,8 @@ def test_a_wheel_speed_that_is_valid_one_message_later_than_without_the_fault_is
 
 @pytest.mark.parametrize(("T_damp", "verdict"), [(20.0, True), (22.1, False), (-1.9, True), (-2.1, False)])
 def test_less_than_is_added_without_the_fault_is_no_kick(T_damp, verdict):
-    run, healthy = quiet(), quiet()
-    healthy["controller.T_damp"] = 20.0
-    run["controller.status"][between(BEGIN, END + 0.2)] = 4
-    run["controller.T_damp"][between(END + 0.25, END + 0.3)] = T_damp
-    assert clean("kick", run, healthy=healthy) == verdict
+    run = with_(("controller.status", BEGIN, END + 0.2, 4), ("controller.T_damp", END + 0.25, END + 0.3, T_damp))
+    assert clean("kick", run, healthy=with_(("controller.T_damp", 0.0, 5.0, 20.0))) == verdict
 
 
 @pytest.mark.parametrize(("swing", "verdict"), [(4.9, True), (5.1, False)])

@@ -56,10 +56,12 @@ def test_further_dead_time_comes_to_that_of_the_loop(monkeypatch: pytest.MonkeyP
     assert Swinging(Point(late=0.003)).loop(0.5, late=0.002) == pytest.approx(0.005)  # type: ignore[comparison-overlap]
 
 
-def test_without_control_the_drive_train_swings_slower_by_the_root_of_it() -> None:
+def test_without_control_the_drive_train_swings_slower_and_nothing_lasts() -> None:
     loops = Swinging(Point(controller=EVERY["NoDamping"].block))  # type: ignore[arg-type]
     slower, contact = (drive_train_mode(loops.loop(N)).frequency for N in (0.5, 1.0))
     assert slower == pytest.approx(sqrt(0.5) * contact, rel=0.01)
+    point = Point(controller=EVERY["NoDamping"].block)  # type: ignore[arg-type]
+    assert limit_cycles(point, swings(point)) == []
 
 
 @pytest.mark.parametrize(
@@ -83,11 +85,6 @@ def test_our_controller_bears_least_in_contact_and_only_floats_in_the_gap() -> N
     assert floating.lasting
     assert (floating.amplitude, floating.frequency) == pytest.approx((1.06, 0.74), rel=0.02)
     assert floating.N < 0.02
-
-
-def test_without_control_nothing_lasts() -> None:
-    point = Point(controller=EVERY["NoDamping"].block)  # type: ignore[arg-type]
-    assert limit_cycles(point, swings(point)) == []
 
 
 @pytest.mark.slow

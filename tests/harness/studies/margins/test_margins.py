@@ -45,20 +45,17 @@ class Known:
         self.gain = L
 
 
-def test_the_margins_of_a_dead_time_are_those_of_the_textbook() -> None:
-    """L = exp(-2 pi i f 0.02 s)/2 is -1/2 at 25 Hz, and nearest to -1 there; it is never as large as 1."""
+def test_the_margins_of_a_dead_time_and_of_a_lag_are_those_of_the_textbook() -> None:
+    # L = exp(-2 pi i f 0.02 s)/2 is -1/2 at 25 Hz, and nearest to -1 there; it is never as large as 1.
     loop: Any = Known(lambda f: 0.5 * np.exp(-2j * pi * 0.02 * f))
     found = margins(loop)
     assert (found.gain_margin, found.gain_frequency) == pytest.approx((2.0, 25.0))
     assert found.M_s == pytest.approx(2.0, rel=1e-3)
     assert found.phase_margin == found.delay_margin == inf
     assert isnan(found.phase_frequency)
-
-
-def test_the_margins_of_a_lag_are_those_of_the_textbook() -> None:
-    """L = 2/(1 + i f/10 Hz) has the magnitude 1 at sqrt(3) 10 Hz, 120 degrees from -1, and is nowhere negative."""
-    loop: Any = Known(lambda f: 2.0 / (1.0 + 0.1j * f))
-    found = margins(loop)
+    # L = 2/(1 + i f/10 Hz) has the magnitude 1 at sqrt(3) 10 Hz, 120 degrees from -1, and is nowhere negative.
+    lag: Any = Known(lambda f: 2.0 / (1.0 + 0.1j * f))
+    found = margins(lag)
     f = 10.0 * sqrt(3.0)
     assert (found.phase_margin, found.phase_frequency) == pytest.approx((2.0 * pi / 3.0, f))
     assert (found.delay_margin, found.delay_frequency) == pytest.approx((1.0 / (3.0 * f), f))
@@ -117,13 +114,10 @@ def test_the_linear_loop_moves_as_the_true_one(name: str) -> None:
     assert np.abs(true - linear).max() < (0.03 if loop.cycle > 1 else 0.003) * np.ptp(true)
 
 
-def test_a_loop_that_feeds_nothing_back_bears_everything() -> None:
+def test_a_loop_that_feeds_nothing_back_bears_everything_and_dead_time_takes_from_the_margin() -> None:
     found = margins(linear_loop(Point(controller=CONTROLLERS["NoDamping"])))
     assert (found.gain_margin, found.phase_margin, found.delay_margin, found.M_s) == (inf, inf, inf, 1.0)
     assert isnan(found.gain_frequency)
-
-
-def test_a_delay_of_the_loop_takes_from_its_margin() -> None:
     # A dead time of whole samples turns the loop gain and does nothing else.
     prompt, late = (linear_loop(Point(late=late, wheel=False)).gain(FREQUENCIES) for late in (0.0, 3.0 * T_S))
     np.testing.assert_allclose(late, prompt * np.exp(-2j * pi * FREQUENCIES * 3.0 * T_S), rtol=1e-6, atol=1e-9)
@@ -131,25 +125,16 @@ def test_a_delay_of_the_loop_takes_from_its_margin() -> None:
     assert margin[1] == pytest.approx(0.5 * (margin[0] + margin[2]), rel=1e-3)
 
 
-def test_a_controller_at_its_limit_is_not_linear() -> None:
-    """What the damping is in the sample in which it is differentiated; a limit a little above leaves it alone."""
+def test_a_controller_at_its_limit_or_in_fallback_is_not_linear() -> None:
+    # What the damping is in the sample in which it is differentiated; a limit a little above leaves it alone.
     damping = Point().controller.update(*settled(Point(), in_contact_and_gap(Point())[0])).T_damp
     point = Point().with_parameters(controller={"T_add_max": abs(damping)})
     with pytest.raises(NotLinear, match=r"DampingController is not linear in contact at 4\.16667 m/s and 40 N\.m: "):
         linear_loop(point)
     linear_loop(point.with_parameters(controller={"T_add_max": 1.1 * abs(damping)}))
-
-
-def test_a_controller_in_fallback_does_not_damp() -> None:
     point = Point(plant=validation_vehicle.BLOCK).with_parameters(controller={"omega_max": 50.0})
     with pytest.raises(NotLinear, match=r"does not damp at 4\.16667 m/s and 40 N\.m: it is in fallback"):
         linear_loop(point)
-
-
-def test_messages_count_in_samples_of_two_milliseconds() -> None:
-    """Between two and four milliseconds they come half a sample later on average."""
-    found = messages(Point().with_parameters(can={"T_cyc": 0.02, "d_min": 0.002, "d_max": 0.004}))
-    assert found == (10, 2)
 
 
 class Inner(NamedTuple):
@@ -165,10 +150,13 @@ class Outer(NamedTuple):
 RECORD = Outer(Inner(1.0, (2.0, 3.0)), 4.0)
 
 
-def test_a_record_is_its_numbers_with_their_names() -> None:
+def test_a_record_is_its_numbers_with_their_names_and_messages_count_in_samples() -> None:
     assert names(RECORD) == ["inner.a", "inner.b.0", "inner.b.1", "c"]
     assert numbers(RECORD) == [1.0, 2.0, 3.0, 4.0]
     assert like(RECORD, [5.0, 6.0, 7.0, 8.0]) == Outer(Inner(5.0, (6.0, 7.0)), 8.0)
+    # Between two and four milliseconds they come half a sample later on average.
+    found = messages(Point().with_parameters(can={"T_cyc": 0.02, "d_min": 0.002, "d_max": 0.004}))
+    assert found == (10, 2)
 
 
 def test_the_rates_of_a_straight_function_are_its_factors_and_a_bend_is_no_kink() -> None:

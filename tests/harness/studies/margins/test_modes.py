@@ -43,9 +43,7 @@ def test_without_feedback_the_loop_has_the_modes_of_its_parts() -> None:
     ("kmh", "design_model", "vehicle"),
     [(15.0, (7.43, 0.033), (7.99, 0.066)), (50.0, (7.81, 0.041), (8.04, 0.174)), (100.0, (7.94, 0.025), (8.28, 0.336))],
 )
-def test_the_undamped_drive_train_swings_as_the_reference_study_says(
-    kmh: float, design_model: tuple[float, float], vehicle: tuple[float, float]
-) -> None:
+def test_the_undamped_drive_train_swings_as_the_reference_study_says(kmh, design_model, vehicle) -> None:
     for point, expected in ((Point(), design_model), (Point(plant=validation_vehicle.BLOCK), vehicle)):
         at_speed = Point(plant=point.plant, v=kmh / 3.6, wheel=False)
         found = modes(linear_loop(at_speed), gain=0.0)

@@ -17,7 +17,7 @@ from driveline.harness.studies.margins.sensitivity import SHOWN, sensitivity, va
 from driveline.harness.views.panels import Curve, Points
 
 
-def test_car_controller_and_settings_reach_every_plant(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_car_controller_and_settings_reach_every_plant_but_no_single_one(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
     monkeypatch.setattr(whole_loop, "analysis", asked.append)
     driveline.analyse(["ValidationVehicle"], "SpeedWashout", {"m": 1900.0, "k_v": 2.0}, folder="here")
@@ -26,9 +26,6 @@ def test_car_controller_and_settings_reach_every_plant(monkeypatch: pytest.Monke
     assert (given.folder, given.controller) == (Path("here"), "SpeedWashout")
     assert given.parameters.items() >= {"plant.m": 1900.0, "controller.k_v": 2.0}.items()
     assert given.parameters["plant.F_z0"] == pytest.approx(8500.0 * 1900.0 / 1450.0, rel=1e-5), "which follows"
-
-
-def test_a_single_plant_is_refused_and_not_ignored() -> None:
     changes: Any = {"plant": "ValidationVehicle"}
     with pytest.raises(TypeError, match="analyse takes plants"):
         driveline.analyse(**changes)
@@ -38,16 +35,13 @@ def metrics(value: float) -> Metrics:
     return Metrics(**{metric.name: value for metric in declared(Metrics)})  # type: ignore[arg-type]
 
 
-def test_a_sensitivity_is_a_relative_change() -> None:
+def test_sensitivities_are_relative_changes_of_car_and_controller_apart() -> None:
     found = sensitivity("plant", "tipin15", "plant.C", [metrics(0.9**2), metrics(1.0), metrics(1.1**2)])
     assert found.changes == pytest.approx(dict.fromkeys(SHOWN, 2.0))
     assert found.largest == pytest.approx(2.0)
     found = sensitivity("plant", "tipin15", "plant.C", [metrics(1.0), metrics(0.0), metrics(1.0)])
     assert all(isnan(change) for change in found.changes.values())
     assert found.largest == 0.0
-
-
-def test_car_and_controller_are_changed_apart_and_within_their_bounds() -> None:
     found = varied("TwoMassDriveline", "DampingController", {"plant.C": 100.0, "controller.k_gap": 1.9})
     assert found["plant.C"] == 100.0
     assert found["controller.C"] == 117.4

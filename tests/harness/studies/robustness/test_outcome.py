@@ -68,13 +68,10 @@ def test_a_level_is_the_magnitude_that_so_many_runs_do_not_exceed():
     assert four.record["overshoot_1_50_percent"] == 0.2
 
 
-def test_shares_are_those_of_the_runs():
+def test_shares_are_those_of_the_runs_and_only_all_are_100_per_cent():
     three = summary(outcome(1), outcome(2, end_swing=50.0), outcome(3, overshoot=0.9))
     assert three.record["bounded_and_quiet"] == three.share("stable") == pytest.approx(2 / 3)
     assert three.record["good"] == pytest.approx(1 / 3)
-
-
-def test_only_all_are_100_per_cent_and_only_none_0():
     assert [percent(share) for share in (1.0, 0.9999, 0.5, 0.0001, 0.0)] == ["100", "99.9", "50", "0.1", "0"]
 
 
@@ -88,13 +85,10 @@ def test_the_worst_settles_last_or_never():
     assert summary(wild, late, never).worst is wild
 
 
-def test_summaries_are_by_manoeuvre_with_the_controllers_in_their_order():
+def test_summaries_are_by_manoeuvre_and_the_goal_is_told_of_all():
     runs = [outcome(1, name, manoeuvre) for name in ("Mine", "Another") for manoeuvre in ("tipin15", "launch")]
     found = [(each.manoeuvre, each.controller, len(each.outcomes)) for each in summaries([*runs, *runs])]
     assert found == [(m, c, 2) for m in ("tipin15", "launch") for c in ("Mine", "Another")]
-
-
-def test_the_goal_is_told_of_all_manoeuvres_and_the_settling_of_tip_in_and_launch():
     runs = [outcome(k, manoeuvre="tipin15", settling_time=0.214) for k in (1, 2)]
     runs += [outcome(k, manoeuvre="tipout", settling_time=0.9) for k in (1, 2)]
     runs += [outcome(k, manoeuvre="launch", settling_time=0.25, end_swing=70.0 * (k - 1)) for k in (1, 2)]

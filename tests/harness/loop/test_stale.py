@@ -1,6 +1,5 @@
 """Neither commands nor functions run a stale build silently."""
 
-import re
 from dataclasses import replace
 from pathlib import Path
 from shutil import copytree
@@ -16,7 +15,6 @@ from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
-from tests import ROOT
 
 RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
 
@@ -32,9 +30,7 @@ def stale(both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     return folder
 
 
-def test_stale_fmus_of_a_folder_are_named_and_not_built(
-    stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_stale_fmus_of_a_folder_are_named_and_not_built(stale, tmp_path, caplog) -> None:
     before = {path: path.read_bytes() for path in stale.rglob("*.fmu")}
     assert main([*RUN, "--fmus", str(stale), "--output", str(tmp_path / "results")]) == 0
     assert [text.count("native/") for text in caplog.messages if text.startswith("stale")] == [4]
@@ -42,9 +38,7 @@ def test_stale_fmus_of_a_folder_are_named_and_not_built(
     assert {path: path.read_bytes() for path in stale.rglob("*.fmu")} == before
 
 
-def test_a_stale_file_is_named(
-    both_built: Path, stale: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_stale_file_is_named(both_built, stale, tmp_path, caplog, monkeypatch) -> None:
     monkeypatch.undo()
     plant = tmp_path / "stale" / "TwoMassDriveline.fmu"
     monkeypatch.setattr(stale_fmus, "is_stale", lambda path: path == plant)
@@ -79,9 +73,7 @@ def test_those_of_the_project_are_built_again_in_the_cache_and_it_is_said_once(
 
 
 @pytest.mark.slow
-def test_a_run_with_an_fmu_of_the_cache_is_the_same_run(
-    stale: Path, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_with_an_fmu_of_the_cache_is_the_same_run(stale, cache, tmp_path, monkeypatch) -> None:
     for module in (built_fmus, fmu_cache):
         monkeypatch.setattr(module, "BUILD", stale)
     given = [*RUN, "--build", "python", "--fmus", str(stale), "--output", str(tmp_path / "results")]
@@ -92,9 +84,7 @@ def test_a_run_with_an_fmu_of_the_cache_is_the_same_run(
     assert len(list(cache.iterdir())) == 1
 
 
-def test_loops_of_both_builds_get_one_folder_of_the_cache(
-    both_built: Path, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_loops_of_both_builds_get_one_folder_of_the_cache(both_built, cache, tmp_path, monkeypatch) -> None:
     """Also if FMUs of one build alone are missing."""
     given = tmp_path / "given"
     copytree(both_built, given)
@@ -110,23 +100,15 @@ def test_loops_of_both_builds_get_one_folder_of_the_cache(
     assert sorted(given.rglob("*")) == before
 
 
-def test_loops_run_native_fmus_only_if_all_have_them(both_built: Path, tmp_path: Path) -> None:
+def test_loops_run_native_fmus_only_if_all_have_them_and_one_of_ones_own_is_none_of_them(
+    both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     given = tmp_path / "given"
     copytree(both_built, given)
     loops = [Settings(plant, folder=given) for plant in PLANTS]
     assert {each.build for each in built_fmus.built_together(loops)} == {"native"}
     (given / "native" / "ValidationVehicle.fmu").unlink()
     assert {each.build for each in built_fmus.built_together(loops)} == {"python"}
-
-
-def test_no_command_but_build_writes_into_the_folder_of_fmus() -> None:
-    """A docstring may call it as a user does, from outside."""
-    asked = re.compile(r"(?<!driveline\.)build_missing\(")
-    asking = [path.stem for path in (ROOT / "harness").rglob("*.py") if asked.search(path.read_text())]
-    assert asking == ["built_fmus"]
-
-
-def test_an_fmu_of_ones_own_among_them_is_none_of_them(both_built: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(built_fmus, "BUILD", both_built)
     plant = both_built / "mine.fmu"
     assert built_fmus.built(str(plant), folder=both_built, build="python").build == "python"
@@ -154,8 +136,3 @@ def test_runs_from_python_name_them_once(stale: Path, caplog: pytest.LogCaptureF
 
     run_many(end, [1.0, 2.0, 3.0], workers)
     assert [text.count("native/") for text in caplog.messages if text.startswith("stale")] == [4]
-
-
-def test_a_program_is_told_too(stale: Path, caplog: pytest.LogCaptureFixture) -> None:
-    simulate(MANOEUVRES["prbs15"], folder=stale)
-    assert "stale, not made from the sources that are installed" in caplog.text
