@@ -215,12 +215,12 @@ def test_what_is_repeatable_keeps_all_values_and_a_record_without_words_is_that_
     assert args.set == (("can.tau", 0.1), ("plant.J_1", 0.06))
     assert args.seed == 1
     # So that nothing is usual in one and not in the other.
-    for command, words in {"replay": ["trip.csv"], "check": ["a.fmu"], "identify": ["a.csv"]}.items():
-        module = import_module(f"driveline.harness.commands.{command}")
-        positional = {"fmus": (Path("a.fmu"),)} if command == "check" else {"recording": Path(words[0])}
-        assert given(command, *words) == module.Arguments(**positional)
-    for command in COMMANDS.keys() - {"target", "replay", "check", "identify"}:
-        assert given(command) == import_module(f"driveline.harness.commands.{command}").Arguments()
+    needed = {"replay": "recording", "identify": "recording", "check": "fmus", "again": "made"}
+    for command in COMMANDS.keys() - {"target"}:
+        file = Path("a.csv")
+        positional = {needed[command]: (file,) if command == "check" else file} if command in needed else {}
+        made = import_module(f"driveline.harness.commands.{command}").Arguments(**positional)
+        assert given(command, *(["a.csv"] if positional else [])) == made
     for action, (record, *_) in ACTIONS.items():
         assert given("target", action) == record()
 

@@ -119,6 +119,12 @@ def test_a_window_and_the_kinds_of_figures_are_those_that_are_asked_for() -> Non
 
 
 def test_a_folder_is_no_file_a_file_no_folder_and_one_for_results_is_tried(tmp_path: Path) -> None:
+    assert output_folder(str(tmp_path / "new" / "results")) == tmp_path / "new" / "results"
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").touch()
+    for text in ("/proc/results", str(tmp_path / "file" / "results")):
+        with pytest.raises(ArgumentTypeError, match="cannot be written to"):
+            output_folder(text)
     one = tmp_path / "signals.csv"
     assert [take(str(one)) for take in (folder, file)] == [one, one]
     one.touch()
@@ -126,12 +132,6 @@ def test_a_folder_is_no_file_a_file_no_folder_and_one_for_results_is_tried(tmp_p
         with pytest.raises(ArgumentTypeError, match=reason):
             take(str(path))
     assert folder(str(tmp_path)) == tmp_path
-    assert output_folder(str(tmp_path / "new" / "results")) == tmp_path / "new" / "results"
-    assert list(tmp_path.iterdir()) == []
-    (tmp_path / "file").touch()
-    for text in ("/proc/results", str(tmp_path / "file" / "results")):
-        with pytest.raises(ArgumentTypeError, match="cannot be written to"):
-            output_folder(text)
 
 
 @pytest.mark.parametrize("take", [folder, output_folder, file])

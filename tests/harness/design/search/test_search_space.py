@@ -35,7 +35,7 @@ def declared(controller: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("controller", TUNED)
-def test_what_is_declared_with_a_range_is_searched_from_its_start(controller: str) -> None:
+def test_what_is_declared_with_a_range_is_searched_from_its_start_within_the_bounds(controller: str) -> None:
     found = {each.name: each for each in space(controller, {}).searched}
     ranges = {
         name: v.declaration.search
@@ -46,10 +46,6 @@ def test_what_is_declared_with_a_range_is_searched_from_its_start(controller: st
     for name, each in found.items():
         assert (each.low, each.high) == pytest.approx(ranges[name])
         assert each.start == pytest.approx(declared(controller)[name].start, rel=1e-5)
-
-
-@pytest.mark.parametrize("controller", TUNED)
-def test_a_range_lies_within_the_bounds_and_around_the_start(controller: str) -> None:
     for name, v in declared(controller).items():
         if isinstance(v.declaration, Real) and v.declaration.search:
             low, high = v.declaration.search

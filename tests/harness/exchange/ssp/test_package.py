@@ -83,16 +83,14 @@ def test_each_plant_is_a_variant_with_its_own_names_and_the_first_one_the_defaul
 
 
 @pytest.mark.parametrize("name", SSDS)
-def test_the_connections_are_those_of_the_loop_and_of_the_source(packaged, name) -> None:
+def test_the_connections_are_those_of_loop_and_source_within_what_the_tools_know_of_the_standard(
+    packaged, name
+) -> None:
     found = {tuple(ends(connection)) for connection in parsed(packaged(), name).iterfind(".//ssd:Connection", NS)}
     fed = {"T_driver": "controller.T_driver", "T_brake": "plant.T_brake", "slope": "plant.slope"}
     sources = {(f"{SOURCE}.{signal}", fed[signal]) for signal in SIGNALS}
     sources.add((f"{SOURCE}.enable", "controller.enable"))
     assert found == sources | {(connection.source, connection.target) for connection in CONNECTIONS}
-
-
-@pytest.mark.parametrize("name", SSDS)
-def test_it_keeps_to_what_the_tools_know_of_the_standard(packaged, name) -> None:
     root = parsed(packaged(), name)
     assert root.find("ssd:System/ssd:Connectors", NS) is None, "libcosim: connections are between components"
     assert {child.tag for child in root.find("ssd:System/ssd:Elements", NS)} == {f"{{{NS['ssd']}}}Component"}
