@@ -51,7 +51,7 @@ class BusLog:
         self.headings = str(path)
         if not databases:
             raise RecordingError(
-                f"{path} holds frames of a bus; give the database that says what they mean, --dbc FILE"
+                f"{path} holds frames of a bus", "; give the database that says what they mean, --dbc FILE"
             )
         known = known_messages(databases)
         self._frames, self._begin = _read(path, known, databases)

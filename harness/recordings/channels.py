@@ -111,7 +111,7 @@ class Channels:
         """Those that have no column, time among them; errors as of `read`."""
         return self._chooser.missing([*([] if self._source.own_time else ["time"]), *quantities])
 
-    def absence(self, missing: Sequence[str]) -> str:
+    def absence(self, missing: Sequence[str]) -> RecordingError:
         """What to say of them."""
         return self._chooser.absence(missing)
 
@@ -129,7 +129,7 @@ class Channels:
                 samples. The longest piece without all that is named.
         """
         if missing := self.missing(*quantities):
-            raise RecordingError(self.absence(missing))
+            raise self.absence(missing)
         clock = [] if self._source.own_time else [self._chooser.needed("time")]
         choices = [*clock, *(self._chooser.needed(quantity) for quantity in quantities)]
         samples = self._source.read([choice.place for choice in choices])
@@ -286,17 +286,20 @@ def _beyond_limit(path: Path, channel: Channel) -> list[Break]:
     for k in beyond[:MOST].tolist():
         problem = (
             f"{path}, {channel.where(k)}: {channel.heading} is {channel.values[k]:g} {channel.unit}; at most {limit:g} "
-            f"{channel.unit} in magnitude can be; --column {channel.quantity}='... [UNIT]' gives another unit"
+            f"{channel.unit} in magnitude can be"
         )
-        breaks.append(around(channel.time, k, k, problem) if few else Break(-inf, inf, problem))
+        advice = f"; --column {channel.quantity}='... [UNIT]' gives another unit"
+        breaks.append(
+            (around(channel.time, k, k, problem) if few else Break(-inf, inf, problem))._replace(advice=advice)
+        )
     return breaks
 
 
 def _refusal(channels: Sequence[Channel], breaks: Sequence[Break]) -> RecordingError:
     """What to say of breaks: the first, and the longest piece without any."""
-    problem = breaks[0].problem
+    problem, advice = breaks[0].problem, breaks[0].advice
     begin, end = max(channel.time.min() for channel in channels), min(channel.time.max() for channel in channels)
     piece = longest_piece(float(begin), float(end), breaks)
-    if piece is None:
-        return RecordingError(problem)
-    return RecordingError(f"{problem}; the longest piece without is --from {typed(piece[0])} --to {typed(piece[1])}")
+    if piece:
+        advice += f"; the longest piece without is --from {typed(piece[0])} --to {typed(piece[1])}"
+    return RecordingError(problem, advice)

@@ -59,27 +59,27 @@ class Chooser:
         choice = self.found(quantity)
         if choice:
             return choice
-        raise RecordingError(self.absence([quantity]))
+        raise self.absence([quantity])
 
     def missing(self, quantities: Iterable[str]) -> list[str]:
         """Those that no column holds; else as `needed`."""
         return [quantity for quantity in quantities if self.found(quantity) is None]
 
-    def absence(self, missing: Sequence[str]) -> str:
+    def absence(self, missing: Sequence[str]) -> RecordingError:
         """What to say of quantities that no column holds."""
         examples = ", ".join(example(quantity, self.names) for quantity in missing)
         if missing[1:]:
             names = plain(", ".join(column.name for column in self.source.columns))
             which = " or ".join(missing)
-            return (
-                f"{self.source.headings}: no column {examples}; the file has: {names}; "
-                f"--column QUANTITY=HEADING says which one is {which}"
+            return RecordingError(
+                f"{self.source.headings}: no column {examples}; the file has: {names}",
+                f"; --column QUANTITY=HEADING says which one is {which}",
             )
         others = " or ".join(self.names[missing[0]][1 : 1 + NAMES_SHOWN])
         known = f" (other names are {others})" if others else ""
-        return (
-            f"{self.source.headings}: no column {examples}{known}; {self._nearest(self.names[missing[0]][0])}; "
-            f"--column {missing[0]}=HEADING says which one it is"
+        return RecordingError(
+            f"{self.source.headings}: no column {examples}{known}; {self._nearest(self.names[missing[0]][0])}",
+            f"; --column {missing[0]}=HEADING says which one it is",
         )
 
     def _nearest(self, name: str) -> str:
@@ -127,9 +127,7 @@ class Chooser:
     def _one(self, quantity: str, found: Sequence[Place], sign: float) -> Choice:
         columns = self.source.columns
         if len(found) > 1:
-            raise RecordingError(
-                f"{self.source.headings}: {_doubled(quantity, [columns[k].heading for k, _ in found])}"
-            )
+            raise _doubled(self.source, quantity, [columns[k].heading for k, _ in found])
         place, unit = found[0]
         si, factor = self._factor(quantity, columns[place], unit)
         return Choice(quantity, columns[place], place, si, sign * factor, unit or si)
@@ -139,18 +137,19 @@ class Chooser:
         declared = QUANTITIES[quantity]
         mended = f"--column {quantity}={quote(f'{column.name} [{declared.file_unit}]')}"
         if unit is None and declared.unit != "1":
-            clock = f"; a time of day needs none, such as {EXAMPLES}" if quantity == "time" else ""
+            clock = f" (a time of day needs none, such as {EXAMPLES})" if quantity == "time" else ""
             raise RecordingError(
                 f"{self.source.headings}: {column.heading} has no unit; write one into the heading, as in "
-                f"{example(quantity, self.names)}, or give it with {mended}{clock}"
+                f"{example(quantity, self.names)}{clock}",
+                f", or give it with {mended}",
             )
         try:
             return si_of(quantity, unit or "1")
         except ValueError as reason:
             raise RecordingError(
                 f"{self.source.headings}: {column.heading} {plain(reason, 200)}, as in the heading "
-                f"{example(quantity, self.names)}; {mended} gives another unit, "
-                f"--column {quantity}=HEADING another column"
+                f"{example(quantity, self.names)}",
+                f"; {mended} gives another unit, --column {quantity}=HEADING another column",
             ) from reason
 
 
@@ -181,12 +180,13 @@ def _readings(column: Column) -> list[tuple[str, str | None]]:
     return [(column.name, column.unit), *((name, unit) for name, unit in others if known(unit))]
 
 
-def _doubled(quantity: str, headings: Sequence[str]) -> str:
+def _doubled(source: Source, quantity: str, headings: Sequence[str]) -> RecordingError:
     """What to say of several columns that could hold a quantity."""
     distinct = [heading for heading in headings if headings.count(heading) == 1]
     if not distinct:
-        return f"{len(headings)} columns are called {headings[0]}; rename all but one in the file"
-    return (
-        f"{' and '.join(headings)} could each be {quantity} ({QUANTITIES[quantity].meaning}); say which one is meant, "
-        f"as in --column {quantity}={quote(distinct[0])}"
+        called = f"{len(headings)} columns are called {headings[0]}; rename all but one in the file"
+        return RecordingError(f"{source.headings}: {called}")
+    return RecordingError(
+        f"{source.headings}: {' and '.join(headings)} could each be {quantity} ({QUANTITIES[quantity].meaning})",
+        f"; say which one is meant, as in --column {quantity}={quote(distinct[0])}",
     )

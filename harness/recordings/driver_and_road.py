@@ -9,6 +9,7 @@ import numpy as np
 from .alignment import aligned
 from .bounded_reading import bounded
 from .channels import Channel, Channels
+from .source import RecordingError
 
 OPTIONAL = ("T_brake", "slope")
 
@@ -35,7 +36,13 @@ def read_course(path: Path) -> Course:
     Raises:
         RecordingError: see `harness.recordings.channels.Channels.read`; only T_driver must be there.
     """
-    recording = Channels(path)
+    try:
+        return _course(Channels(path))
+    except RecordingError as refusal:
+        raise RecordingError(refusal.problem) from refusal  # what is drawn has no options
+
+
+def _course(recording: Channels) -> Course:
     given = ["T_driver", *(quantity for quantity in (*OPTIONAL, "v") if recording.has(quantity))]
     channels = recording.read(*given, optional=given[1:], drawn=True)
     time, values = aligned(channels, base="T_driver")

@@ -145,7 +145,7 @@ def _require_columns(recording: Channels, *needed: str) -> None:
     if missing := recording.missing(*needed):
         there = [] if "time" in missing else [quantity for quantity in needed if quantity not in missing]
         slow = filter(None, map(too_slow, recording.read(*there).values() if there else ()))
-        raise RecordingError("; ".join([recording.absence(missing), *slow]))
+        raise RecordingError("; ".join([str(recording.absence(missing)), *slow]))
 
 
 def _present(recording: Channels, forms: Sequence[tuple[str, ...]]) -> tuple[str, ...]:

@@ -16,7 +16,19 @@ if TYPE_CHECKING:
 
 
 class RecordingError(DrivelineError):
-    """A recording that cannot be used; the message says where and why."""
+    """A recording that cannot be used; the message says where and why.
+
+    Attributes:
+        problem: without what is advised.
+    """
+
+    def __init__(self, problem: str, advice: str = "") -> None:
+        """
+        Args:
+            advice: options that mend it, for commands that have them; with the mark before it.
+        """
+        super().__init__(problem + advice)
+        self.problem = problem
 
 
 class Where(NamedTuple):

@@ -79,11 +79,13 @@ class Break(NamedTuple):
         end: time in s up to which what is before can be, -inf if nothing can.
         begin: time from which on what is after can be, inf if nothing can.
         problem: in words.
+        advice: options that mend it, with the mark before it.
     """
 
     end: float
     begin: float
     problem: str
+    advice: str = ""
 
 
 def around(time: np.ndarray, first: int, last: int, problem: str) -> Break:
