@@ -186,3 +186,14 @@ def opened(path, folder, name="instance", kind: Any = FMU2Slave) -> Iterator[Any
         yield host
     finally:
         host.fmu.freeInstance()
+
+
+def instance(folder: str, name: str) -> Any:
+    """A fixture: an instance of the FMU in the folder that another fixture makes."""
+
+    @pytest.fixture
+    def made(request, tmp_path):
+        with opened(request.getfixturevalue(folder) / f"{name}.fmu", tmp_path) as host:
+            yield host
+
+    return made

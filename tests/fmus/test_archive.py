@@ -74,9 +74,3 @@ def test_a_file_in_the_place_of_the_folder_is_answered_in_one_line(
     assert end.value.code == 2
     assert "--output" in (message := capsys.readouterr().err)
     assert "file is a file; a folder is needed" in message
-
-
-def test_the_installer_reads_the_version_without_running_anything():
-    assignments = [node for node in ast.parse(Path(release.__file__).read_text()).body if isinstance(node, ast.Assign)]
-    found = [node.value for node in assignments if [ast.unparse(target) for target in node.targets] == ["VERSION"]]
-    assert [ast.literal_eval(value) for value in found] == [release.VERSION]

@@ -1,6 +1,5 @@
 """FMUs built for a car of one's own: the start values are those of its files, and it runs as if they had been set."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,8 @@ from driveline.models.block.declaration import variables
 from driveline.models.block.types import with_start_values
 from tests import ROOT
 from tests.fmus.host import opened
+from tests.fmus.native.test_page import EXAMPLE
+from tests.slow import slow
 from tests.together import together
 
 CAR = ROOT / "examples" / "cars" / "mid_size.toml"
@@ -61,40 +62,28 @@ def loop_parameters(gains: Path) -> dict[str, Any]:
     return for_instances(read_files(CAR, gains), {place: blocks[k] for place, k in places.items()})
 
 
-def check_start_values(folder: Path, gains: Path) -> None:
+@pytest.mark.parametrize(("made", "folder"), [("of_python", "."), ("compiled", NATIVE)])
+def test_start_values_are_those_of_the_files(request: Any, gains: Path, made: str, folder: str) -> None:
     values = read_files(CAR, gains)
     for name, fmu in FMUS.items():
         declared = {v.name: v.start for v in variables(fmu.block.Parameters)}
-        found, own = start_values(folder / f"{name}.fmu"), of_one_car(values, declared)
+        found, own = start_values(request.getfixturevalue(made) / folder / f"{name}.fmu"), of_one_car(values, declared)
         assert found == {key: own.get(key, declared[key]) for key in found}, name
         assert any(key in values for key in found), name
 
 
-def check_runs(folder: Path, default: Path, build: str, gains: Path) -> None:
-    """The loop of FMUs for the car is that of the default FMUs with the parameters set, bit by bit."""
-    tipin = MANOEUVRES["tipin15"]
+@pytest.mark.parametrize(
+    ("made", "build"), slow([("of_python", "python"), ("compiled", NATIVE)], but=[("compiled", NATIVE)])
+)
+def test_the_loop_for_the_car_is_that_of_the_default_with_the_parameters_set_bit_by_bit(
+    request: Any, both_built: Path, gains: Path, made: str, build: str
+) -> None:
+    tipin, folder, default = MANOEUVRES["tipin15"], request.getfixturevalue(made), both_built
     own = simulate(tipin, folder=folder, build=build)
     same = simulate(tipin, folder=default, build=build, parameters=loop_parameters(gains))
     other = simulate(tipin, folder=default, build=build)
     assert np.array_equal(own, same)
     assert not np.array_equal(own["plant.T_gear"], other["plant.T_gear"])
-
-
-def test_start_values_of_the_fmus_that_run_python(of_python: Path, gains: Path) -> None:
-    check_start_values(of_python, gains)
-
-
-def test_start_values_of_the_native_fmus(compiled: Path, gains: Path) -> None:
-    check_start_values(compiled / NATIVE, gains)
-
-
-@pytest.mark.slow
-def test_fmus_that_run_python_run_as_if_the_parameters_had_been_set(of_python: Path, built: Path, gains: Path) -> None:
-    check_runs(of_python, built, "python", gains)
-
-
-def test_native_fmus_run_as_if_the_parameters_had_been_set(compiled: Path, both_built: Path, gains: Path) -> None:
-    check_runs(compiled, both_built, NATIVE, gains)
 
 
 def test_fmus_for_two_cars_live_in_one_process(of_python: Path, built: Path, tmp_path: Path) -> None:
@@ -137,48 +126,9 @@ def test_a_refused_file_builds_nothing(option: str, tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-def test_a_block_of_the_users_own_takes_its_start_values_too(
-    native_builder: Callable[..., Path], tmp_path: Path
-) -> None:
-    (tmp_path / "small_lag.py").write_text(OWN, encoding="utf-8")
-    (tmp_path / "car.toml").write_text("tau = 0.005\nslack = 0.25\n", encoding="utf-8")
-    (made,) = build_fmus([str(tmp_path / "small_lag.py")], tmp_path, vehicle=tmp_path / "car.toml")
-    assert start_values(made) == {"tau": 0.005, "slack": 0.25}
-
-
-OWN = '''"""A first-order lag.
-
-    tau dy/dt = u - y
-"""
-
-from typing import Annotated, NamedTuple
-
-from driveline.fmus.fmu import Fmu
-from driveline.models.block.declaration import Real
-from driveline.models.block.types import ContinuousBlock
-
-
-class Parameters(NamedTuple):
-    tau: Annotated[float, Real("s", "time constant", 1e-3, 1.0)] = 0.1
-    slack: Annotated[float, Real("1", "of no effect", 0.0, 1.0)] = 0.0
-
-
-class Input(NamedTuple):
-    u: Annotated[float, Real("1", "input")] = 0.0
-
-
-class State(NamedTuple):
-    y: Annotated[float, Real("1", "state")]
-
-
-class Output(NamedTuple):
-    y: Annotated[float, Real("1", "output")]
-
-
-BLOCK = ContinuousBlock(
-    name="SmallLag", description="Lag", module=__name__, Parameters=Parameters, Input=Input, State=State,
-    Output=Output, start=lambda u, p: State(0.0), derivative=lambda x, u, p: State((u.u - x.y) / p.tau),
-    output=lambda x, u, p: Output(x.y + 0.0 * p.slack), step_size=0.001,
-)
-FMU = Fmu(BLOCK, stop_time=1.0)
-'''
+def test_a_block_of_the_users_own_takes_its_start_values_too(native_builder: object, tmp_path: Path) -> None:
+    (tmp_path / "my_vehicle.py").write_text(EXAMPLE, encoding="utf-8")
+    (tmp_path / "car.toml").write_text("i = 12.0\nd = 0.25\n", encoding="utf-8")
+    (made,) = build_fmus([str(tmp_path / "my_vehicle.py")], tmp_path, vehicle=tmp_path / "car.toml")
+    found = start_values(made)
+    assert (found["i"], found["d"], found["m"]) == (12.0, 0.25, 1450.0)

@@ -3,14 +3,8 @@
 import math
 import sys
 from itertools import cycle, repeat
-from typing import Annotated, NamedTuple
-
-import pytest
-from pythonfmu import Fmi2Slave
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.python.slave import BlockSlave
-from driveline.models.block.declaration import Real
 from driveline.models.block.types import SampledBlock
 from tests.fmus.host import opened
 from tests.together import together
@@ -40,79 +34,22 @@ def steps_to(end, start, sizes):
         time += step_size
 
 
-class Number(NamedTuple):
-    n: Annotated[float, Real("1", "a number")] = 0.0
-
-
-class Nothing(NamedTuple):
-    pass
-
-
-class CounterSlave(BlockSlave, Fmi2Slave):  # pyright: ignore[reportIncompatibleMethodOverride]
-    """Adds its input once every tick."""
-
-    block = SampledBlock(
-        name="Counter",
-        description="Sum over the ticks",
-        module=__name__,
-        Parameters=Nothing,
-        Input=Number,
-        State=Number,
-        Output=Number,
-        start=lambda u, p: Number(0.0),
-        output=lambda x, u, p: x,
-        update=lambda x, u, p: Number(x.n + u.n),
-        sample_time=T_S,
-    )
-
-
-@pytest.fixture
-def counter():
-    slave = CounterSlave(instance_name="counter", resources="")
-    slave.setup_experiment(0.0, None, None)
-    slave.enter_initialization_mode()
-    slave.exit_initialization_mode()
-    slave.set_real([0], [1.0])
-    return slave
-
-
-def test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sample_later(counter):
-    counter.do_step(0.0, 0.001)
-    assert counter.get_real([1]) == [0.0]
-    counter.set_real([0], [10.0])
-    counter.do_step(0.001, 0.001)
-    assert counter.get_real([1]) == [1.0]
-    counter.do_step(0.002, 0.0001)
-    assert counter.get_real([1]) == [1.0]
-    counter.do_step(0.0021, 0.0019)
-    assert counter.get_real([1]) == [11.0]
-
-
-def test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held(counter):
-    counter.do_step(0.0, 0.0033)
-    assert counter.get_real([1]) == [1.0]
-    counter.do_step(0.0033, 0.0107)
-    assert counter.get_real([1]) == [7.0]
-
-
-@pytest.mark.parametrize("step_size", [0.001, 0.0033, 0.002 / 3.0, 0.1])
-def test_a_host_that_adds_up_its_time_gets_every_tick_once(counter, step_size):
-    time = 0.0
-    for k in range(1, 20_001):
-        counter.do_step(time, step_size)
-        time += step_size
-        assert counter.get_real([1]) == [math.floor(k * step_size / T_S + 1e-3)]
-
-
-@pytest.mark.parametrize("off", [0.9e-6, -0.9e-6])
-def test_the_clock_of_a_host_may_go_wrong_and_no_tick_moves(counter, off):
+@together("off", [0.9e-6, -0.9e-6])
+def test_the_clock_of_a_host_may_go_wrong_and_no_tick_moves(built, tmp_path, off):
     """A sum of 1e7 steps of 1 ms is 2 us off; here it is so after three steps, and 0.2 ms after 200."""
-    time = 0.0
-    for k in range(200):
-        counter.set_real([0], [float(k)])
-        counter.do_step(time, 0.001)
-        time = counter.time + off
-        assert counter.get_real([1]) == [sum(range(0, k, 2))]
+    block, time = FMUS["DampingController"].block, 0.0
+    assert isinstance(block, SampledBlock)
+    p = block.Parameters()
+    x = coming = block.start(block.Input(), p)
+    with opened(built / "DampingController.fmu", tmp_path) as host:
+        host.initialize()
+        for k in range(200):
+            u = block.Input(T_driver=float(k % 7))
+            host.set(T_driver=u.T_driver)
+            host.step(time, 0.001)
+            time += 0.001 + off
+            x, coming = (coming, coming) if k % 2 else (x, block.update(x, u, p))
+            assert tuple(host.outputs().values()) == tuple(block.output(x, u, p))
 
 
 @together("name", SAMPLED)
@@ -153,11 +90,10 @@ def test_outputs_are_right_at_the_start_and_parameters_in_effect(built, tmp_path
         assert tuple(host.outputs().values()) == expected
 
 
-def test_an_input_that_is_fed_through_shows_before_the_step(built, tmp_path):
-    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize(sigma_omega=0.0, q_omega=0.0)
-        host.set(omega_1=123.0)
-        assert host.get("omega_1_meas") == 123.0
+def test_an_input_that_is_fed_through_shows_before_the_step(motor):
+    motor.initialize(sigma_omega=0.0, q_omega=0.0)
+    motor.set(omega_1=123.0)
+    assert motor.get("omega_1_meas") == 123.0
 
 
 def test_time_counts_from_the_start_time(built, tmp_path):
@@ -194,17 +130,6 @@ def test_a_tick_within_a_thousandth_of_a_sample_is_at_the_end_of_the_step(built,
         assert tuple(host.outputs().values()) == tuple(block.output(states[2], then, p))
 
 
-@together("step_size", [0.0, -0.001, math.nextafter(1000.0, math.inf), 1e300, math.nan, math.inf])
-def test_a_step_that_is_not_positive_or_too_long_is_refused(built, tmp_path, step_size):
-    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize(T_ref=50.0)
-        before = host.outputs()
-        message = host.refuses(host.step, 0.0, step_size)
-        assert message == f"communicationStepSize = {step_size!r} s is refused; allowed is above 0 to 1000 s"
-        assert host.outputs() == before
-        host.step(0.0, 0.001)
-
-
 @together("step_size", [5e-324, 1000.0])
 def test_the_shortest_and_the_longest_step_are_allowed(built, tmp_path, step_size):
     """Shown by a step that is refused for its time, which is looked at after its size."""
@@ -213,15 +138,14 @@ def test_the_shortest_and_the_longest_step_are_allowed(built, tmp_path, step_siz
         assert "currentCommunicationPoint = 7.0 s" in host.refuses(host.step, 7.0, step_size)
 
 
-def test_a_step_that_does_not_move_time_is_refused(built, tmp_path):
+def test_a_step_that_does_not_move_time_is_refused(can):
     """Else a sampled block would stand still while all its steps are answered with OK."""
-    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
-        host.initialize(start_time=1e17)
-        message = "communicationStepSize = 0.001 s is refused; added to the time 1e+17 s it leaves it as it is"
-        assert host.refuses(host.step, 1e17, 0.001) == message
-        host.fmu.reset()
-        host.initialize(start_time=1.0)
-        host.step(1.0, math.ulp(1.0))
+    can.initialize(start_time=1e17)
+    message = "communicationStepSize = 0.001 s is refused; added to the time 1e+17 s it leaves it as it is"
+    assert can.refuses(can.step, 1e17, 0.001) == message
+    can.fmu.reset()
+    can.initialize(start_time=1.0)
+    can.step(1.0, math.ulp(1.0))
 
 
 @together("time", [0.0, 0.0011, 0.001 - 1.01e-6, 0.001 + 1.01e-6, math.nan])
@@ -247,34 +171,31 @@ def test_the_time_of_a_host_may_be_a_microsecond_off(built, tmp_path, difference
         host.step(1e-6, 0.001)
 
 
-def test_any_finite_time_is_a_start_time(built, tmp_path):
-    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
-        for time in (sys.float_info.max, -sys.float_info.max, 5.0):
-            host.initialize(start_time=time)
-            host.fmu.reset()
+def test_any_finite_time_is_a_start_time(can):
+    for time in (sys.float_info.max, -sys.float_info.max, 5.0):
+        can.initialize(start_time=time)
+        can.fmu.reset()
 
 
-def test_a_run_ends_at_its_stop_time(built, tmp_path):
-    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
-        host.initialize(start_time=1.0, stop_time=1.01)
-        host.step(1.0, 0.009)
-        before = host.outputs()
-        message = host.refuses(host.step, 1.009, 0.001 + 1.01e-6)
-        assert message == f"a step to {1.009 + (0.001 + 1.01e-6)!r} s is refused; the run was said to stop at 1.01 s"
-        assert host.outputs() == before
-        host.step(1.009, 0.001 + 0.99e-6)
-        assert "stop at 1.01 s" in host.refuses(host.step, 1.01, 0.001)
+def test_a_run_ends_at_its_stop_time(can):
+    can.initialize(start_time=1.0, stop_time=1.01)
+    can.step(1.0, 0.009)
+    before = can.outputs()
+    message = can.refuses(can.step, 1.009, 0.001 + 1.01e-6)
+    assert message == f"a step to {1.009 + (0.001 + 1.01e-6)!r} s is refused; the run was said to stop at 1.01 s"
+    assert can.outputs() == before
+    can.step(1.009, 0.001 + 0.99e-6)
+    assert "stop at 1.01 s" in can.refuses(can.step, 1.01, 0.001)
 
 
-def test_the_stop_time_is_kept_in_a_saved_state_and_forgotten_by_a_reset(built, tmp_path):
-    with opened(built / "WheelSpeedCan.fmu", tmp_path) as host:
-        host.initialize(stop_time=0.01)
-        saved = host.fmu.serializeFMUstate(host.fmu.getFMUstate())
-        host.fmu.reset()
-        host.initialize()
-        host.step(0.0, 0.02)
-        host.fmu.setFMUstate(host.fmu.deSerializeFMUstate(saved))
-        assert "stop at 0.01 s" in host.refuses(host.step, 0.0, 0.02)
+def test_the_stop_time_is_kept_in_a_saved_state_and_forgotten_by_a_reset(can):
+    can.initialize(stop_time=0.01)
+    saved = can.fmu.serializeFMUstate(can.fmu.getFMUstate())
+    can.fmu.reset()
+    can.initialize()
+    can.step(0.0, 0.02)
+    can.fmu.setFMUstate(can.fmu.deSerializeFMUstate(saved))
+    assert "stop at 0.01 s" in can.refuses(can.step, 0.0, 0.02)
 
 
 @together("stop_time", [math.nextafter(5.0, 0.0), -math.inf, math.nan])
@@ -287,41 +208,20 @@ def test_a_run_does_not_stop_before_its_start(built, tmp_path, stop_time):
             host.fmu.reset()
 
 
-def test_outputs_change_with_time_alone(built, tmp_path):
-    with opened(built / "TwoMassDriveline.fmu", tmp_path) as host:
-        host.initialize(v_0=10.0, T_0=50.0)
-        seen = {host.get("v")}
-        for k in range(3):
-            host.step(0.01 * k, 0.01)
-            seen.add(host.get("v"))
-        assert len(seen) == 4
+def test_outputs_change_with_time_alone(plant):
+    plant.initialize(v_0=10.0, T_0=50.0)
+    seen = {plant.get("v")}
+    for k in range(3):
+        plant.step(0.01 * k, 0.01)
+        seen.add(plant.get("v"))
+    assert len(seen) == 4
 
 
-def test_a_new_instance_shows_what_it_would_start_with(built, tmp_path):
-    with opened(built / "TwoMassDriveline.fmu", tmp_path) as host:
-        block = FMUS["TwoMassDriveline"].block
-        u, p = block.Input(), block.Parameters()
-        for _ in range(2):
-            assert tuple(host.outputs().values()) == tuple(block.output(block.start(u, p), u, p))
-            host.initialize(v_0=10.0)
-            host.step(0.0, 0.01)
-            host.fmu.reset()
-
-
-def test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on(built, tmp_path):
-    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
-        assert "its place is after initialization" in host.refuses(host.step, 0.0, 0.001)
-        assert "fmi2ExitInitializationMode is refused" in host.refuses(host.fmu.exitInitializationMode)
-        host.fmu.setupExperiment()
-        host.fmu.enterInitializationMode()
-        assert "fmi2EnterInitializationMode is refused" in host.refuses(host.fmu.enterInitializationMode)
-        assert "in initialization mode" in host.refuses(host.step, 0.0, 0.001)
-        host.fmu.exitInitializationMode()
-        assert "fmi2SetupExperiment is refused" in host.refuses(host.fmu.setupExperiment)
-        host.step(0.0, 0.001)
-        host.fmu.terminate()
-        assert "fmi2DoStep is refused after termination" in host.refuses(host.step, 0.001, 0.001)
-        assert "T_ref = 1.0 is refused; " in host.refuses(host.set, T_ref=1.0)
-        host.fmu.reset()
-        host.initialize()
-        host.step(0.0, 0.001)
+def test_a_new_instance_shows_what_it_would_start_with(plant):
+    block = FMUS["TwoMassDriveline"].block
+    u, p = block.Input(), block.Parameters()
+    for _ in range(2):
+        assert tuple(plant.outputs().values()) == tuple(block.output(block.start(u, p), u, p))
+        plant.initialize(v_0=10.0)
+        plant.step(0.0, 0.01)
+        plant.fmu.reset()

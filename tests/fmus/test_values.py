@@ -63,13 +63,12 @@ def test_one_bad_value_among_good_ones_keeps_them_all_out(hosts):
     assert host.fmu.getReal(references) == [0.0, 0.0]
 
 
-def test_the_controller_takes_any_measurement_and_stays_finite(built, tmp_path):
-    with opened(built / "DampingController.fmu", tmp_path) as host:
-        host.initialize()
-        for k, value in enumerate((math.nan, math.inf, -math.inf, 1e300, -1e300) * 20):
-            host.set(T_driver=value, omega_1_meas=value, T_mot_est=value, omega_2_can=value, counter=-k)
-            host.step(k * 0.002, 0.002)
-            assert abs(host.get("T_ref")) <= host.get("T_max")
+def test_the_controller_takes_any_measurement_and_stays_finite(controller):
+    controller.initialize()
+    for k, value in enumerate((math.nan, math.inf, -math.inf, 1e300, -1e300) * 20):
+        controller.set(T_driver=value, omega_1_meas=value, T_mot_est=value, omega_2_can=value, counter=-k)
+        controller.step(k * 0.002, 0.002)
+        assert abs(controller.get("T_ref")) <= controller.get("T_max")
 
 
 def test_an_output_cannot_be_set(hosts):
@@ -77,16 +76,15 @@ def test_an_output_cannot_be_set(hosts):
     assert "T_mot is an output and cannot be set" in host.refuses(host.set, T_mot=1.0)
 
 
-def test_a_parameter_is_fixed_after_initialization_and_free_after_reset(built, tmp_path):
-    with opened(built / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize(tau=0.01)
-        message = host.refuses(host.set, tau=0.02)
-        assert "tau = 0.02 is refused; a fixed parameter can be set until initialization mode is left" in message
-        assert host.get("tau") == 0.01
-        host.fmu.reset()
-        assert host.get("tau") == FMUS["MotorTorqueLoop"].block.Parameters().tau
-        host.initialize(tau=0.02)
-        assert host.get("tau") == 0.02
+def test_a_parameter_is_fixed_after_initialization_and_free_after_reset(motor):
+    motor.initialize(tau=0.01)
+    message = motor.refuses(motor.set, tau=0.02)
+    assert "tau = 0.02 is refused; a fixed parameter can be set until initialization mode is left" in message
+    assert motor.get("tau") == 0.01
+    motor.fmu.reset()
+    assert motor.get("tau") == FMUS["MotorTorqueLoop"].block.Parameters().tau
+    motor.initialize(tau=0.02)
+    assert motor.get("tau") == 0.02
 
 
 def test_unknown_references_and_wrong_types_are_named(hosts):
@@ -100,11 +98,10 @@ def test_unknown_references_and_wrong_types_are_named(hosts):
     assert "T_ref is of type Real, not String" in host.refuses(host.fmu.setString, [0], ["1"])
 
 
-def test_an_enumeration_is_read_as_its_number(built, tmp_path):
-    with opened(built / "DampingController.fmu", tmp_path) as host:
-        host.initialize(enable=False)
-        assert host.get("status") == 1
-        assert not host.get("enable")
+def test_an_enumeration_is_read_as_its_number(controller):
+    controller.initialize(enable=False)
+    assert controller.get("status") == 1
+    assert not controller.get("enable")
 
 
 def test_instances_do_not_see_each_other(built, tmp_path):

@@ -75,12 +75,6 @@ def test_a_car_that_is_no_mapping_is_refused(given: Any) -> None:
     )
 
 
-def test_all_that_is_wrong_with_a_car_is_said_at_once() -> None:
-    with pytest.raises(ParameterFileError) as refused:
-        car({"ks": 30000.0, "m": 1900.0, "T_max": -5.0})
-    assert [line.split()[0] for line in str(refused.value).splitlines()] == ["ks", "T_max"]
-
-
 def test_the_numbers_of_numpy_are_numbers() -> None:
     assert car({"m": np.float32(1900.0), "i": np.int64(9)}) == car({"m": 1900.0})
 

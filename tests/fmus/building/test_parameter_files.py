@@ -1,8 +1,9 @@
 """Files with the parameters of a car and of its controller: what may stand in them, and where it goes."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, NamedTuple
 
 import pytest
 
@@ -19,7 +20,7 @@ from driveline.fmus.catalogue import FMUS
 from driveline.fmus.errors import ParameterFileError
 from driveline.fmus.fmu import Fmu
 from driveline.fmus.names import RENAMED
-from driveline.models.block.declaration import variables
+from driveline.models.block.declaration import Integer, Real, variables
 from tests import ROOT
 from tests.together import together
 
@@ -44,9 +45,10 @@ def refusal(read: Callable[[Path], Any], path: Path) -> str:
 
 
 def test_a_vehicle_file_names_what_belongs_to_the_car(written: Callable[[str], Path]) -> None:
-    path = written("# mine\nJ_1 = 0.09  # kg.m2\nm = 2200\nT_cyc = 1e-2\nk_s = 3.0e4\n")
-    values = read_vehicle(path)
+    values = read_vehicle(written("\ufeff# mine\nJ_1 = 0.09  # kg.m2\nm = 2200\nT_cyc = 1e-2\nk_s = 3.0e4\n"))
     assert values == {"J_1": 0.09, "m": 2200.0, "T_cyc": 0.01, "k_s": 3e4}
+    bounds = {"m": 300.0, "phi_B": 0.0, "J_1": 10.0}
+    assert read_vehicle(written("m = 300\nphi_B = 0\nJ_1 = 10\n")) == bounds, "are allowed themselves"
     assert all(type(value) is float for value in values.values())
 
 
@@ -103,10 +105,6 @@ def test_what_belongs_to_the_car_is_no_parameter_of_the_controller(written: Call
     assert refusal(read_parameters, path) == expected
 
 
-def test_the_bounds_are_allowed_themselves(written: Callable[[str], Path]) -> None:
-    assert read_vehicle(written("m = 300\nphi_B = 0\nJ_1 = 10\n")) == {"m": 300.0, "phi_B": 0.0, "J_1": 10.0}
-
-
 def test_all_that_is_wrong_is_said_at_once(written: Callable[[str], Path]) -> None:
     lines = refusal(read_vehicle, written("J1 = 1\nJ_2 = 0.3\n  'C' = 0\n")).splitlines()
     assert [line.partition(", ")[2].partition(":")[0] for line in lines] == ["line 1", "line 3"]
@@ -143,16 +141,7 @@ def test_a_name_is_shown_in_one_line(written: Callable[[str], Path]) -> None:
     assert len(refusal(read_vehicle, written(f"{'a' * 900} = 1"))) < 300
 
 
-def test_a_file_may_begin_with_the_mark_of_utf_8(written: Callable[[str], Path]) -> None:
-    assert read_vehicle(written("\ufeffJ_1 = 0.09\n")) == {"J_1": 0.09}
-
-
 def test_all_blocks_that_have_a_parameter_must_allow_it(written: Callable[[str], Path]) -> None:
-    from dataclasses import replace
-    from typing import Annotated, NamedTuple
-
-    from driveline.models.block.declaration import Integer, Real
-
     class Narrow(NamedTuple):
         J_1: Annotated[float, Real("kg.m2", "inertia", 0.05, 0.06)] = 0.055
         gears: Annotated[int, Integer("number of gears", 1, 6)] = 1
@@ -204,14 +193,6 @@ def test_an_example_names_the_whole_car(path: Path) -> None:
     values = read_vehicle(path)
     assert {"J_1", "J_2", "C", "phi_B", "i", "r", "m", "tau", "T_max", "T_cyc", "d_min", "d_max"} <= values.keys()
     assert {"J_w", "J_g", "J_p", "F_z0", "J_y", "m_h", "c_slip"} <= values.keys()
-
-
-def test_there_are_the_three_cars_of_the_documentation() -> None:
-    cars = {path.stem: read_vehicle(path) for path in EXAMPLES}
-    default = {name: owned[name].start for owned in PARAMETERS.values() for name in owned}
-    assert set(cars) == {"mid_size", "small", "van"}
-    assert (cars["small"]["m"], cars["small"]["C"]) == (900.0, default["C"] / 2.0)
-    assert (cars["van"]["m"], cars["van"]["phi_B"]) == (3500.0, 2.0 * default["phi_B"])
 
 
 @pytest.mark.parametrize(("old", "new"), RENAMED.items())

@@ -1,6 +1,6 @@
 /* A host without Python: loads an FMU, runs it, saves and restores it, resets it and runs it again.
 
-usage: host LIBRARY GUID STEPS STEP_SIZE INPUT OUTPUT...
+usage: host LIBRARY GUID RESOURCES STEPS STEP_SIZE INPUT OUTPUT...
 INPUT and OUTPUT are value references of Reals. Prints a line with the outputs of every communication point,
 then `again` and those of a second run, of another load of the library. */
 #include <dlfcn.h>
@@ -21,20 +21,13 @@ typedef struct {
     size_t count;
 } Run;
 
+#define EACH(F)                                                                                             \
+    F(Instantiate) F(FreeInstance) F(SetupExperiment) F(EnterInitializationMode) F(ExitInitializationMode)  \
+    F(SetReal) F(GetReal) F(DoStep) F(Terminate) F(Reset) F(GetFMUstate) F(SetFMUstate) F(FreeFMUstate)
+
+#define MEMBER(function) fmi2##function##TYPE *function;
 typedef struct {
-    fmi2SetupExperimentTYPE *setup_experiment;
-    fmi2EnterInitializationModeTYPE *enter_initialization_mode;
-    fmi2ExitInitializationModeTYPE *exit_initialization_mode;
-    fmi2SetRealTYPE *set_real;
-    fmi2GetRealTYPE *get_real;
-    fmi2DoStepTYPE *do_step;
-    fmi2TerminateTYPE *terminate;
-    fmi2ResetTYPE *reset;
-    fmi2GetFMUstateTYPE *get_state;
-    fmi2SetFMUstateTYPE *set_state;
-    fmi2FreeFMUstateTYPE *free_state;
-    fmi2InstantiateTYPE *instantiate;
-    fmi2FreeInstanceTYPE *free_instance;
+    EACH(MEMBER)
 } Functions;
 
 static void demand(int holds, const char *what)
@@ -69,27 +62,16 @@ static void find(void *library, const char *name, void *function)
 static Functions functions_of(void *library)
 {
     Functions f;
-    find(library, "fmi2Instantiate", &f.instantiate);
-    find(library, "fmi2FreeInstance", &f.free_instance);
-    find(library, "fmi2SetupExperiment", &f.setup_experiment);
-    find(library, "fmi2EnterInitializationMode", &f.enter_initialization_mode);
-    find(library, "fmi2ExitInitializationMode", &f.exit_initialization_mode);
-    find(library, "fmi2SetReal", &f.set_real);
-    find(library, "fmi2GetReal", &f.get_real);
-    find(library, "fmi2DoStep", &f.do_step);
-    find(library, "fmi2Terminate", &f.terminate);
-    find(library, "fmi2Reset", &f.reset);
-    find(library, "fmi2GetFMUstate", &f.get_state);
-    find(library, "fmi2SetFMUstate", &f.set_state);
-    find(library, "fmi2FreeFMUstate", &f.free_state);
+#define FOUND(function) find(library, "fmi2" #function, &f.function);
+    EACH(FOUND)
     return f;
 }
 
 static void initialize(const Functions *f, fmi2Component c)
 {
-    ok(f->setup_experiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0));
-    ok(f->enter_initialization_mode(c));
-    ok(f->exit_initialization_mode(c));
+    ok(f->SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0));
+    ok(f->EnterInitializationMode(c));
+    ok(f->ExitInitializationMode(c));
 }
 
 /* The steps first to last - 1; the input goes to and fro between 40 and -40. */
@@ -97,14 +79,14 @@ static void make_steps(const Functions *f, fmi2Component c, const Run *run, int 
 {
     for (int k = first; k < last; k++) {
         const fmi2Real value = k / 50 % 2 ? -40.0 : 40.0;
-        ok(f->set_real(c, &run->input, 1, &value));
-        ok(f->do_step(c, k * run->step_size, run->step_size, fmi2True));
+        ok(f->SetReal(c, &run->input, 1, &value));
+        ok(f->DoStep(c, k * run->step_size, run->step_size, fmi2True));
     }
 }
 
 static void get_outputs(const Functions *f, fmi2Component c, const Run *run, fmi2Real values[])
 {
-    ok(f->get_real(c, run->outputs, run->count, values));
+    ok(f->GetReal(c, run->outputs, run->count, values));
 }
 
 static void print_run(const Functions *f, fmi2Component c, const Run *run)
@@ -127,49 +109,49 @@ static void check_saved_state(const Functions *f, fmi2Component c, const Run *ru
     fmi2FMUstate state = NULL;
     fmi2Real first[MOST_OUTPUTS], second[MOST_OUTPUTS];
     make_steps(f, c, run, 0, half);
-    ok(f->get_state(c, &state));
+    ok(f->GetFMUstate(c, &state));
     make_steps(f, c, run, half, run->steps);
     get_outputs(f, c, run, first);
-    ok(f->set_state(c, state));
-    ok(f->free_state(c, &state));
-    demand(state == NULL, "a freed state is NULL");
+    ok(f->SetFMUstate(c, state));
+    ok(f->FreeFMUstate(c, &state));
     make_steps(f, c, run, half, run->steps);
     get_outputs(f, c, run, second);
     demand(memcmp(first, second, run->count * sizeof *first) == 0, "the run after a restore is the same");
 }
 
-static void load_and_run(const char *path, const char *guid, const Run *run)
+static void load_and_run(char *const arguments[], const Run *run)
 {
     const fmi2CallbackFunctions callbacks = {to_stderr, calloc, free, NULL, NULL};
-    void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    void *library = dlopen(arguments[1], RTLD_NOW | RTLD_LOCAL);
     demand(library != NULL, dlerror());
     const Functions f = functions_of(library);
-    fmi2Component c = f.instantiate("one", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2True);
-    fmi2Component other = f.instantiate("other", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2True);
+    const char *guid = arguments[2], *resources = arguments[3];
+    fmi2Component c = f.Instantiate("one", fmi2CoSimulation, guid, resources, &callbacks, fmi2False, fmi2True);
+    fmi2Component other = f.Instantiate("other", fmi2CoSimulation, guid, resources, &callbacks, fmi2False, fmi2True);
     demand(c && other, "fmi2Instantiate");
     initialize(&f, c);
     initialize(&f, other);
     make_steps(&f, other, run, 0, 10);
     print_run(&f, c, run);
-    ok(f.terminate(c));
-    ok(f.reset(c));
+    ok(f.Terminate(c));
+    ok(f.Reset(c));
     initialize(&f, c);
     check_saved_state(&f, c, run);
-    f.free_instance(c);
+    f.FreeInstance(c);
     make_steps(&f, other, run, 10, 20);
-    f.free_instance(other);
+    f.FreeInstance(other);
     demand(dlclose(library) == 0, "dlclose");
 }
 
 int main(int count, char *arguments[])
 {
-    demand(count > 6 && count - 6 <= MOST_OUTPUTS, "usage: host LIBRARY GUID STEPS STEP_SIZE INPUT OUTPUT...");
-    Run run = {.steps = atoi(arguments[3]), .step_size = atof(arguments[4]), .count = (size_t)(count - 6)};
-    run.input = (fmi2ValueReference)atoi(arguments[5]);
+    demand(count > 7 && count - 7 <= MOST_OUTPUTS, "usage: host LIBRARY GUID RESOURCES STEPS STEP_SIZE INPUT OUTPUT...");
+    Run run = {.steps = atoi(arguments[4]), .step_size = atof(arguments[5]), .count = (size_t)(count - 7)};
+    run.input = (fmi2ValueReference)atoi(arguments[6]);
     for (size_t k = 0; k < run.count; k++)
-        run.outputs[k] = (fmi2ValueReference)atoi(arguments[6 + k]);
-    load_and_run(arguments[1], arguments[2], &run);
+        run.outputs[k] = (fmi2ValueReference)atoi(arguments[7 + k]);
+    load_and_run(arguments, &run);
     puts("again");
-    load_and_run(arguments[1], arguments[2], &run);
+    load_and_run(arguments, &run);
     return 0;
 }

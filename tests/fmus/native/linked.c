@@ -6,44 +6,24 @@ Compiled with EACH(X), which is X(name) for each FMU. Usage: linked GUID..., one
 #include <stdio.h>
 #include <stdlib.h>
 
+#define FUNCTIONS(F, name)                                                                                \
+    F(name, Instantiate) F(name, SetupExperiment) F(name, EnterInitializationMode)                        \
+    F(name, ExitInitializationMode) F(name, SetReal) F(name, DoStep) F(name, GetReal) F(name, Terminate)  \
+    F(name, FreeInstance)
+
+#define MEMBER(name, function) fmi2##function##TYPE *function;
 typedef struct {
     const char *name;
-    fmi2InstantiateTYPE *instantiate;
-    fmi2SetupExperimentTYPE *setup_experiment;
-    fmi2EnterInitializationModeTYPE *enter_initialization_mode;
-    fmi2ExitInitializationModeTYPE *exit_initialization_mode;
-    fmi2SetRealTYPE *set_real;
-    fmi2DoStepTYPE *do_step;
-    fmi2GetRealTYPE *get_real;
-    fmi2TerminateTYPE *terminate;
-    fmi2FreeInstanceTYPE *free_instance;
+    FUNCTIONS(MEMBER, )
     fmi2ValueReference output;
 } Fmu;
 
-#define DECLARED(name, output)                                            \
-    extern fmi2InstantiateTYPE name##_fmi2Instantiate;                    \
-    extern fmi2SetupExperimentTYPE name##_fmi2SetupExperiment;            \
-    extern fmi2EnterInitializationModeTYPE name##_fmi2EnterInitializationMode; \
-    extern fmi2ExitInitializationModeTYPE name##_fmi2ExitInitializationMode; \
-    extern fmi2SetRealTYPE name##_fmi2SetReal;                            \
-    extern fmi2DoStepTYPE name##_fmi2DoStep;                              \
-    extern fmi2GetRealTYPE name##_fmi2GetReal;                            \
-    extern fmi2TerminateTYPE name##_fmi2Terminate;                        \
-    extern fmi2FreeInstanceTYPE name##_fmi2FreeInstance;
+#define EXTERN(name, function) extern fmi2##function##TYPE name##_fmi2##function;
+#define DECLARED(name, output) FUNCTIONS(EXTERN, name)
 EACH(DECLARED)
 
-#define LISTED(name, output)                 \
-    {#name,                                  \
-     name##_fmi2Instantiate,                 \
-     name##_fmi2SetupExperiment,             \
-     name##_fmi2EnterInitializationMode,     \
-     name##_fmi2ExitInitializationMode,      \
-     name##_fmi2SetReal,                     \
-     name##_fmi2DoStep,                      \
-     name##_fmi2GetReal,                     \
-     name##_fmi2Terminate,                   \
-     name##_fmi2FreeInstance,                \
-     output},
+#define POINTER(name, function) name##_fmi2##function,
+#define LISTED(name, output) {#name, FUNCTIONS(POINTER, name) output},
 static const Fmu fmus[] = {EACH(LISTED)};
 
 enum { COUNT = sizeof fmus / sizeof *fmus, STEPS = 100 };
@@ -66,22 +46,22 @@ int main(int count, char *arguments[])
         return 2;
     for (int n = 0; n < COUNT; n++) {
         const Fmu *fmu = &fmus[n];
-        instances[n] = fmu->instantiate(fmu->name, fmi2CoSimulation, arguments[1 + n], NULL, &callbacks, 0, 0);
+        instances[n] = fmu->Instantiate(fmu->name, fmi2CoSimulation, arguments[1 + n], NULL, &callbacks, 0, 0);
         demand(instances[n] ? fmi2OK : fmi2Error, fmu, "instantiate");
-        demand(fmu->setup_experiment(instances[n], 0, 0.0, 0.0, 0, 0.0), fmu, "setup");
-        demand(fmu->enter_initialization_mode(instances[n]), fmu, "enter");
-        demand(fmu->exit_initialization_mode(instances[n]), fmu, "exit");
-        demand(fmu->set_real(instances[n], &input, 1, &torque), fmu, "set");
+        demand(fmu->SetupExperiment(instances[n], 0, 0.0, 0.0, 0, 0.0), fmu, "setup");
+        demand(fmu->EnterInitializationMode(instances[n]), fmu, "enter");
+        demand(fmu->ExitInitializationMode(instances[n]), fmu, "exit");
+        demand(fmu->SetReal(instances[n], &input, 1, &torque), fmu, "set");
     }
     for (int k = 0; k < STEPS; k++)
         for (int n = 0; n < COUNT; n++)
-            demand(fmus[n].do_step(instances[n], k * 1e-3, 1e-3, 1), &fmus[n], "step");
+            demand(fmus[n].DoStep(instances[n], k * 1e-3, 1e-3, 1), &fmus[n], "step");
     for (int n = 0; n < COUNT; n++) {
         fmi2Real value;
-        demand(fmus[n].get_real(instances[n], &fmus[n].output, 1, &value), &fmus[n], "get");
+        demand(fmus[n].GetReal(instances[n], &fmus[n].output, 1, &value), &fmus[n], "get");
         printf("%s %.17g\n", fmus[n].name, value);
-        demand(fmus[n].terminate(instances[n]), &fmus[n], "terminate");
-        fmus[n].free_instance(instances[n]);
+        demand(fmus[n].Terminate(instances[n]), &fmus[n], "terminate");
+        fmus[n].FreeInstance(instances[n]);
     }
     return 0;
 }

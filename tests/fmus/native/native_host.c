@@ -13,6 +13,11 @@ native_host GUID SEED CALLS */
 
 enum { MOST = 8, INSTANCES = 3, STATES = 4, WIDEST = 30 };
 
+#define CASE(number, call) \
+    case number:           \
+        call;              \
+        break;
+
 static unsigned long long random_state;
 static size_t allocations;
 
@@ -83,36 +88,16 @@ static void set_or_get(Slot *slot)
     double *real = draw(30) ? reals : NULL;
     int *whole = draw(30) ? integers : NULL;
     switch (draw(11)) {
-    case 0:
-        fmi2SetReal(slot->instance, from, count, real);
-        break;
-    case 1:
-        fmi2SetInteger(slot->instance, from, count, whole);
-        break;
-    case 2:
-        fmi2SetBoolean(slot->instance, from, count, whole);
-        break;
-    case 3:
-        fmi2SetString(slot->instance, from, count, strings);
-        break;
-    case 4:
-        fmi2GetReal(slot->instance, from, count, real);
-        break;
-    case 5:
-        fmi2GetInteger(slot->instance, from, count, whole);
-        break;
-    case 6:
-        fmi2GetBoolean(slot->instance, from, count, whole);
-        break;
-    case 7:
-        fmi2GetString(slot->instance, from, count, strings);
-        break;
-    case 8:
-        fmi2SetRealInputDerivatives(slot->instance, from, count, orders, real);
-        break;
-    case 9:
-        fmi2GetRealOutputDerivatives(slot->instance, from, count, orders, real);
-        break;
+    CASE(0, fmi2SetReal(slot->instance, from, count, real))
+    CASE(1, fmi2SetInteger(slot->instance, from, count, whole))
+    CASE(2, fmi2SetBoolean(slot->instance, from, count, whole))
+    CASE(3, fmi2SetString(slot->instance, from, count, strings))
+    CASE(4, fmi2GetReal(slot->instance, from, count, real))
+    CASE(5, fmi2GetInteger(slot->instance, from, count, whole))
+    CASE(6, fmi2GetBoolean(slot->instance, from, count, whole))
+    CASE(7, fmi2GetString(slot->instance, from, count, strings))
+    CASE(8, fmi2SetRealInputDerivatives(slot->instance, from, count, orders, real))
+    CASE(9, fmi2GetRealOutputDerivatives(slot->instance, from, count, orders, real))
     default: {
         double changes[MOST] = {1.0};
         fmi2GetDirectionalDerivative(slot->instance, from, count, references, draw(MOST), changes, real);
@@ -151,18 +136,10 @@ static void save_or_restore(Slot *slot)
     size_t size = 0;
     fmi2FMUstate *state = &slot->states[draw(STATES)];
     switch (draw(6)) {
-    case 0:
-        fmi2GetFMUstate(slot->instance, draw(20) ? state : NULL);
-        break;
-    case 1:
-        fmi2SetFMUstate(slot->instance, *state);
-        break;
-    case 2:
-        fmi2FreeFMUstate(slot->instance, draw(20) ? state : NULL);
-        break;
-    case 3:
-        fmi2SerializedFMUstateSize(slot->instance, *state, draw(20) ? &size : NULL);
-        break;
+    CASE(0, fmi2GetFMUstate(slot->instance, draw(20) ? state : NULL))
+    CASE(1, fmi2SetFMUstate(slot->instance, *state))
+    CASE(2, fmi2FreeFMUstate(slot->instance, draw(20) ? state : NULL))
+    CASE(3, fmi2SerializedFMUstateSize(slot->instance, *state, draw(20) ? &size : NULL))
     default:
         if (fmi2SerializedFMUstateSize(slot->instance, *state, &size) != fmi2OK || size > sizeof bytes)
             break;
@@ -191,20 +168,14 @@ static void change_mode(Slot *slot)
 {
     const fmi2String categories[] = {"logStatusError", "logStatusDiscard", "%s%n", NULL};
     switch (draw(12)) {
-    case 0:
-        fmi2SetupExperiment(slot->instance, 0, 0.0, draw(3) ? 0.0 : number(), draw(3) == 0, draw(3) ? 10.0 : number());
-        break;
+    CASE(0, fmi2SetupExperiment(slot->instance, 0, 0.0, draw(3) ? 0.0 : number(), draw(3) == 0, draw(3) ? 9.0 : number()))
     case 1:
     case 2:
-    case 3:
-        fmi2EnterInitializationMode(slot->instance);
-        break;
+    CASE(3, fmi2EnterInitializationMode(slot->instance))
     case 4:
     case 5:
     case 6:
-    case 7:
-        fmi2ExitInitializationMode(slot->instance);
-        break;
+    CASE(7, fmi2ExitInitializationMode(slot->instance))
     case 8:
         if (draw(10) == 0)
             fmi2Terminate(slot->instance);
@@ -213,9 +184,7 @@ static void change_mode(Slot *slot)
         if (draw(10) == 0)
             fmi2Reset(slot->instance);
         break;
-    case 10:
-        fmi2CancelStep(slot->instance);
-        break;
+    CASE(10, fmi2CancelStep(slot->instance))
     default:
         fmi2SetDebugLogging(slot->instance, draw(4) > 0, draw(5), draw(20) ? categories : NULL);
     }
@@ -241,34 +210,16 @@ static void integrate(Slot *slot)
     for (size_t k = 0; k < WIDEST; k++)
         values[k] = draw(30) ? draw(100) * 1e-2 : number();
     switch (draw(12)) {
-    case 0:
-        fmi2EnterEventMode(slot->instance);
-        break;
-    case 1:
-        fmi2NewDiscreteStates(slot->instance, draw(20) ? &info : NULL);
-        break;
+    CASE(0, fmi2EnterEventMode(slot->instance))
+    CASE(1, fmi2NewDiscreteStates(slot->instance, draw(20) ? &info : NULL))
     case 2:
-    case 3:
-        fmi2EnterContinuousTimeMode(slot->instance);
-        break;
-    case 4:
-        fmi2CompletedIntegratorStep(slot->instance, 0, draw(20) ? &enter : NULL, draw(20) ? &end : NULL);
-        break;
-    case 5:
-        fmi2SetTime(slot->instance, number());
-        break;
-    case 6:
-        fmi2GetDerivatives(slot->instance, draw(20) ? values : NULL, count);
-        break;
-    case 7:
-        fmi2GetEventIndicators(slot->instance, draw(20) ? values : NULL, indicators);
-        break;
-    case 8:
-        fmi2GetNominalsOfContinuousStates(slot->instance, draw(20) ? values : NULL, count);
-        break;
-    case 9:
-        fmi2GetContinuousStates(slot->instance, draw(20) ? values : NULL, count);
-        break;
+    CASE(3, fmi2EnterContinuousTimeMode(slot->instance))
+    CASE(4, fmi2CompletedIntegratorStep(slot->instance, 0, draw(20) ? &enter : NULL, draw(20) ? &end : NULL))
+    CASE(5, fmi2SetTime(slot->instance, number()))
+    CASE(6, fmi2GetDerivatives(slot->instance, draw(20) ? values : NULL, count))
+    CASE(7, fmi2GetEventIndicators(slot->instance, draw(20) ? values : NULL, indicators))
+    CASE(8, fmi2GetNominalsOfContinuousStates(slot->instance, draw(20) ? values : NULL, count))
+    CASE(9, fmi2GetContinuousStates(slot->instance, draw(20) ? values : NULL, count))
     default:
         fmi2SetContinuousStates(slot->instance, draw(20) ? values : NULL, count);
     }
@@ -316,26 +267,16 @@ int main(int count, char *arguments[])
                 "100 %s", any_type(), draw(10) ? arguments[1] : "{%d}", NULL, choice[draw(6)], 0, draw(5) > 0);
         switch (draw(10)) {
         case 0:
-        case 1:
-            set_or_get(slot);
-            break;
-        case 2:
-            save_or_restore(slot);
-            break;
-        case 3:
-            ask_status(slot);
-            break;
-        case 4:
-            change_mode(slot);
-            break;
+            CASE(1, set_or_get(slot))
+            CASE(2, save_or_restore(slot))
+            CASE(3, ask_status(slot))
+            CASE(4, change_mode(slot))
         case 5:
             if (draw(100) == 0 && slot->instance)
                 free_slot(slot);
             break;
         case 6:
-        case 7:
-            integrate(slot);
-            break;
+            CASE(7, integrate(slot))
         default:
             step(slot);
         }

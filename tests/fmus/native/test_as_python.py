@@ -10,9 +10,6 @@ from tests.fmus.description.test_model_description import (  # noqa: F401
 )
 from tests.fmus.native.any_build import *  # noqa: F403
 from tests.fmus.test_numbers import *  # noqa: F403
-from tests.fmus.test_time import (  # noqa: F401
-    test_calls_out_of_sequence_are_refused_and_a_right_sequence_goes_on,
-)
 
 
 @pytest.fixture(scope="module")

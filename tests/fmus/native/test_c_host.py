@@ -72,7 +72,7 @@ def test_a_c_program_gets_what_fmpy_gets_twice(both_built, host, tmp_path, name)
     outputs = [v.valueReference for v in description.modelVariables if v.causality == "output" and v.type == "Real"]
     expected = through_fmpy(path, folder, outputs)
     library = folder / "binaries" / fmpy.platform / f"{name}{fmpy.sharedLibraryExtension}"
-    arguments = [library, description.guid, STEPS, STEP_SIZE, 0, *outputs]
+    arguments = [library, description.guid, "", STEPS, STEP_SIZE, 0, *outputs]
     done = subprocess.run([host, *map(str, arguments)], capture_output=True, text=True, env={}, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     first, second = ([[*map(float, line.split())] for line in run.splitlines()] for run in done.stdout.split("again\n"))

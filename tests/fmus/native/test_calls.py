@@ -19,15 +19,14 @@ DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)
 
 
 @together("function", ["SetReal", "GetReal", "SetInteger", "GetBoolean", "SetBoolean", "GetString"])
-def test_missing_arrays_are_refused(native, tmp_path, function):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        two = ctypes.c_size_t(2)
-        references = (ctypes.c_uint * 2)(0, 1)
-        values = (ctypes.c_double * 2)()
-        assert call(host, f"fmi2{function}", None, two, values) == ERROR
-        assert call(host, f"fmi2{function}", references, two, None) == ERROR
-        assert "NULL" in host.message
-        assert call(host, f"fmi2{function}", None, ctypes.c_size_t(0), None) == OK
+def test_missing_arrays_are_refused(motor, function):
+    two = ctypes.c_size_t(2)
+    references = (ctypes.c_uint * 2)(0, 1)
+    values = (ctypes.c_double * 2)()
+    assert call(motor, f"fmi2{function}", None, two, values) == ERROR
+    assert call(motor, f"fmi2{function}", references, two, None) == ERROR
+    assert "NULL" in motor.message
+    assert call(motor, f"fmi2{function}", None, ctypes.c_size_t(0), None) == OK
 
 
 @together(
@@ -39,18 +38,16 @@ def test_missing_arrays_are_refused(native, tmp_path, function):
         *("fmi2SerializeFMUstate", "fmi2DeSerializeFMUstate", "fmi2GetStatus", "fmi2GetStringStatus"),
     ],
 )
-def test_without_an_instance_every_function_is_an_error(native, tmp_path, function):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        binary = ctypes.CDLL(host.fmu.dll._name)
-        zeros = (ctypes.c_size_t(0), ctypes.c_size_t(0), ctypes.c_size_t(0), ctypes.c_size_t(0))
-        assert getattr(binary, function)(ctypes.c_void_p(), *(arguments_of(function, host) or zeros)) == ERROR
+def test_without_an_instance_every_function_is_an_error(motor, function):
+    binary = ctypes.CDLL(motor.fmu.dll._name)
+    zeros = (ctypes.c_size_t(0), ctypes.c_size_t(0), ctypes.c_size_t(0), ctypes.c_size_t(0))
+    assert getattr(binary, function)(ctypes.c_void_p(), *(arguments_of(function, motor) or zeros)) == ERROR
 
 
-def test_freeing_nothing_is_no_error(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        binary = ctypes.CDLL(host.fmu.dll._name)
-        binary.fmi2FreeInstance.restype = None
-        binary.fmi2FreeInstance(ctypes.c_void_p())
+def test_freeing_nothing_is_no_error(motor):
+    binary = ctypes.CDLL(motor.fmu.dll._name)
+    binary.fmi2FreeInstance.restype = None
+    binary.fmi2FreeInstance(ctypes.c_void_p())
 
 
 @together(
@@ -64,31 +61,27 @@ def test_freeing_nothing_is_no_error(native, tmp_path):
         ({"kind": 2}, "co-simulation"),
     ],
 )
-def test_what_cannot_be_instantiated_is_said(native, tmp_path, what, expected):
-    with opened(native / "WheelSpeedCan.fmu", tmp_path) as host:
-        binary = ctypes.CDLL(host.fmu.dll._name)
-        binary.fmi2Instantiate.restype = ctypes.c_void_p
-        right = {"name": b"instance", "kind": 1, "guid": str(host.description.guid).encode()}
-        given = right | what
-        made = binary.fmi2Instantiate(
-            given["name"], given["kind"], given["guid"], None, ctypes.byref(host._callbacks), 0, 1
-        )
-        assert made is None
-        assert expected in host.message
-        assert host.named == (given["name"] or b"").decode()
-        assert binary.fmi2Instantiate(given["name"], 1, given["guid"], None, None, 0, 1) is None
+def test_what_cannot_be_instantiated_is_said(can, what, expected):
+    binary = ctypes.CDLL(can.fmu.dll._name)
+    binary.fmi2Instantiate.restype = ctypes.c_void_p
+    right = {"name": b"instance", "kind": 1, "guid": str(can.description.guid).encode()}
+    given = right | what
+    made = binary.fmi2Instantiate(given["name"], given["kind"], given["guid"], None, ctypes.byref(can._callbacks), 0, 1)
+    assert made is None
+    assert expected in can.message
+    assert can.named == (given["name"] or b"").decode()
+    assert binary.fmi2Instantiate(given["name"], 1, given["guid"], None, None, 0, 1) is None
 
 
 @together("missing", ["allocateMemory", "freeMemory"])
-def test_without_callbacks_for_memory_nothing_is_instantiated(native, tmp_path, missing):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        binary = ctypes.CDLL(host.fmu.dll._name)
-        binary.fmi2Instantiate.restype = ctypes.c_void_p
-        callbacks = type(host._callbacks).from_buffer_copy(host._callbacks)
-        setattr(callbacks, missing, type(getattr(callbacks, missing))())
-        guid = str(host.description.guid).encode()
-        assert binary.fmi2Instantiate(b"other", 1, guid, None, ctypes.byref(callbacks), 0, 1) is None
-        assert (host.named, "callbacks for memory" in host.message) == ("other", True)
+def test_without_callbacks_for_memory_nothing_is_instantiated(motor, missing):
+    binary = ctypes.CDLL(motor.fmu.dll._name)
+    binary.fmi2Instantiate.restype = ctypes.c_void_p
+    callbacks = type(motor._callbacks).from_buffer_copy(motor._callbacks)
+    setattr(callbacks, missing, type(getattr(callbacks, missing))())
+    guid = str(motor.description.guid).encode()
+    assert binary.fmi2Instantiate(b"other", 1, guid, None, ctypes.byref(callbacks), 0, 1) is None
+    assert (motor.named, "callbacks for memory" in motor.message) == ("other", True)
 
 
 ONE = ctypes.c_size_t(1)
@@ -128,18 +121,17 @@ def status(host, function, kind, value):
     return call(host, function, kind, ctypes.byref(value)), value.value
 
 
-def test_the_status_is_that_of_the_last_step(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize()
-        host.step(0.0, 0.25)
-        assert status(host, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, OK)
-        for step, expected in (((0.0, 0.25), ERROR), ((0.25, 1001.0), DISCARD)):
-            with pytest.raises(FMICallException):
-                host.step(*step)
-            assert status(host, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, expected)
-        assert status(host, "fmi2GetRealStatus", LAST_SUCCESSFUL_TIME, ctypes.c_double(-1.0)) == (OK, 0.25)
-        assert status(host, "fmi2GetBooleanStatus", TERMINATED, ctypes.c_int(-1)) == (OK, 0)
-        assert status(host, "fmi2GetStringStatus", PENDING_STATUS, ctypes.c_char_p()) == (OK, b"")
+def test_the_status_is_that_of_the_last_step(motor):
+    motor.initialize()
+    motor.step(0.0, 0.25)
+    assert status(motor, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, OK)
+    for step, expected in (((0.0, 0.25), ERROR), ((0.25, 1001.0), DISCARD)):
+        with pytest.raises(FMICallException):
+            motor.step(*step)
+        assert status(motor, "fmi2GetStatus", DO_STEP_STATUS, ctypes.c_int(-1)) == (OK, expected)
+    assert status(motor, "fmi2GetRealStatus", LAST_SUCCESSFUL_TIME, ctypes.c_double(-1.0)) == (OK, 0.25)
+    assert status(motor, "fmi2GetBooleanStatus", TERMINATED, ctypes.c_int(-1)) == (OK, 0)
+    assert status(motor, "fmi2GetStringStatus", PENDING_STATUS, ctypes.c_char_p()) == (OK, b"")
 
 
 @together("function", ["GetStatus", "GetRealStatus", "GetIntegerStatus", "GetBooleanStatus"])
@@ -149,60 +141,56 @@ def test_a_status_that_does_not_exist_is_discarded(native, tmp_path, function):
         assert status(host, f"fmi2{function}", PENDING_STATUS, ctypes.c_double(-1.0)) == (DISCARD, -1.0)
 
 
-def test_messages_are_given_out_by_category(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize()
+def test_messages_are_given_out_by_category(motor):
+    motor.initialize()
 
-        def messages():
-            """Which of a discarded step and an unknown reference is told."""
-            has_message = []
-            for call_wrongly in (lambda: host.step(0.0, 1001.0), lambda: host.fmu.getReal([99])):
-                host.message = ""
-                with pytest.raises(FMICallException):
-                    call_wrongly()
-                has_message.append(bool(host.message))
-            return has_message
+    def messages():
+        """Which of a discarded step and an unknown reference is told."""
+        has_message = []
+        for call_wrongly in (lambda: motor.step(0.0, 1001.0), lambda: motor.fmu.getReal([99])):
+            motor.message = ""
+            with pytest.raises(FMICallException):
+                call_wrongly()
+            has_message.append(bool(motor.message))
+        return has_message
 
-        assert messages() == [True, True]
-        host.fmu.setDebugLogging(False, ["logStatusDiscard"])
-        assert messages() == [False, True]
-        host.fmu.setDebugLogging(False, ["logStatusError"])
-        assert messages() == [False, False]
-        host.fmu.setDebugLogging(True, [])
-        host.fmu.setDebugLogging(False, [])
-        assert messages() == [False, False]
-        host.fmu.setDebugLogging(True, ["logStatusDiscard"])
-        assert messages() == [True, False]
-        host.fmu.setDebugLogging(True, [])
-        message = host.refuses(host.fmu.setDebugLogging, True, ["logEvents"])
-        assert message == "log category logEvents is unknown; there are logStatusError and logStatusDiscard"
-        assert call(host, "fmi2SetDebugLogging", 1, ONE, (ctypes.c_char_p * 1)()) == ERROR
-        assert "log category NULL is unknown" in host.message
-        assert messages() == [True, True]
+    assert messages() == [True, True]
+    motor.fmu.setDebugLogging(False, ["logStatusDiscard"])
+    assert messages() == [False, True]
+    motor.fmu.setDebugLogging(False, ["logStatusError"])
+    assert messages() == [False, False]
+    motor.fmu.setDebugLogging(True, [])
+    motor.fmu.setDebugLogging(False, [])
+    assert messages() == [False, False]
+    motor.fmu.setDebugLogging(True, ["logStatusDiscard"])
+    assert messages() == [True, False]
+    motor.fmu.setDebugLogging(True, [])
+    message = motor.refuses(motor.fmu.setDebugLogging, True, ["logEvents"])
+    assert message == "log category logEvents is unknown; there are logStatusError and logStatusDiscard"
+    assert call(motor, "fmi2SetDebugLogging", 1, ONE, (ctypes.c_char_p * 1)()) == ERROR
+    assert "log category NULL is unknown" in motor.message
+    assert messages() == [True, True]
 
 
 @together("change", [lambda saved: forged(saved, "mode", 3), lambda saved: sealed(saved[4:] + bytes(8))])
-def test_a_state_that_no_instance_can_have_written_is_refused_for_all_its_checksum(native, tmp_path, change):
+def test_a_state_that_no_instance_can_have_written_is_refused_for_all_its_checksum(motor, change):
     """With a mode that does not exist; with more in it than there is."""
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        saved = change(bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate())))
-        assert "its bytes are damaged" in host.refuses(host.fmu.deSerializeFMUstate, saved)
+    saved = change(bytes(motor.fmu.serializeFMUstate(motor.fmu.getFMUstate())))
+    assert "its bytes are damaged" in motor.refuses(motor.fmu.deSerializeFMUstate, saved)
 
 
-def test_a_saved_state_tells_its_checksum_and_its_build(native, tmp_path):
+def test_a_saved_state_tells_its_checksum_and_its_build(motor):
     """The CRC-32 of the rest, the GUID filled up with zeros, whole multiples of 8 bytes."""
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        saved = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))
-        assert saved[:4] == zlib.crc32(saved[4:]).to_bytes(4, "little")
-        assert saved[4:48] == str(host.description.guid).encode().ljust(44, b"\0")
-        assert len(saved) % 8 == 0
+    saved = bytes(motor.fmu.serializeFMUstate(motor.fmu.getFMUstate()))
+    assert saved[:4] == zlib.crc32(saved[4:]).to_bytes(4, "little")
+    assert saved[4:48] == str(motor.description.guid).encode().ljust(44, b"\0")
+    assert len(saved) % 8 == 0
 
 
-def test_a_build_whose_name_does_not_end_is_named_as_far_as_there_is_room(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        body = bytes(host.fmu.serializeFMUstate(host.fmu.getFMUstate()))[4:]
-        saved = sealed(b"x" * 44 + body[44:])
-        assert f"saved by {43 * 'x'}, this is" in host.refuses(host.fmu.deSerializeFMUstate, saved)
+def test_a_build_whose_name_does_not_end_is_named_as_far_as_there_is_room(motor):
+    body = bytes(motor.fmu.serializeFMUstate(motor.fmu.getFMUstate()))[4:]
+    saved = sealed(b"x" * 44 + body[44:])
+    assert f"saved by {43 * 'x'}, this is" in motor.refuses(motor.fmu.deSerializeFMUstate, saved)
 
 
 @together("name", FMUS)

@@ -62,10 +62,10 @@ def test_an_input_may_be_at_its_bounds_and_a_rate_as_large_as_a_number_can_be(mo
     assert motor.get("T_ref") == T_ref
 
 
-def test_a_run_may_start_and_stop_at_the_last_time_that_there_is(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize(start_time=sys.float_info.max, stop_time=sys.float_info.max)
-        restore(host, saved(host))
+def test_a_run_may_start_and_stop_at_the_last_time_that_there_is(motor):
+    motor.fmu.reset()
+    motor.initialize(start_time=sys.float_info.max, stop_time=sys.float_info.max)
+    restore(motor, saved(motor))
 
 
 def test_a_state_that_is_no_number_is_refused_after_the_end_of_the_run_too(motor):
@@ -94,10 +94,9 @@ def test_outputs_that_were_asked_for_are_not_computed_again(motor):
 
 
 @pytest.mark.parametrize("counter", [-(2**31), 2**31 - 1])
-def test_a_controller_keeps_signals_that_are_absurd(native, tmp_path, counter):
-    with opened(native / "DampingController.fmu", tmp_path) as host:
-        host.initialize()
-        host.set(omega_1_meas=math.nan, T_mot_est=math.inf, counter=counter)
-        restore(host, saved(host))
-        assert math.isnan(host.get("omega_1_meas"))
-        assert (host.get("T_mot_est"), host.get("counter")) == (math.inf, counter)
+def test_a_controller_keeps_signals_that_are_absurd(controller, counter):
+    controller.initialize()
+    controller.set(omega_1_meas=math.nan, T_mot_est=math.inf, counter=counter)
+    restore(controller, saved(controller))
+    assert math.isnan(controller.get("omega_1_meas"))
+    assert (controller.get("T_mot_est"), controller.get("counter")) == (math.inf, counter)

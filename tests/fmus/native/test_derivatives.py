@@ -7,7 +7,22 @@ import pytest
 
 from driveline.fmus.native.arithmetic import Node, Recording, TracedSymbol, node_of
 from driveline.fmus.native.rates import rates
-from driveline.models.block.operators import atan, clip, cos, exp, floor, log, maximum, sign, sin, sqrt, tanh, where
+from driveline.models.block.operators import (
+    atan,
+    branch,
+    clip,
+    cos,
+    exp,
+    floor,
+    interpolate,
+    log,
+    maximum,
+    sign,
+    sin,
+    sqrt,
+    tanh,
+    where,
+)
 from tests.fmus.native.recorded import values
 from tests.together import together
 
@@ -44,6 +59,8 @@ def of_two(function: Callable[..., Any]) -> tuple[Recording, list[int], list[int
         lambda a, b: where(a < b, a * b, a + b) - where(a > b, a, 0.0),
         lambda a, b: clip(a * b, 0.0, 1.0) + maximum(a, b) * sign(b),
         lambda a, b: where(a < 1.0, 2.0, b),
+        lambda a, b: interpolate([a, 3.0 * b, a * b, b], b),
+        lambda a, b: sum(branch(a < b, lambda: (a * b, b), lambda: (b, a))),
     ],
 )
 @together("along", [(1.0, 0.0), (0.0, 1.0), (0.6, -1.3)])

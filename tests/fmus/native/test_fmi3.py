@@ -102,129 +102,118 @@ def test_its_sources_are_described(fmi3):
     assert not any("fmi2" in name for name in names)
 
 
-def test_a_rate_holds_until_it_is_set(fmi3, tmp_path):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        rate = host.fmu.rates[host.variables["T_ref"].valueReference]
-        assert host.fmu.getFloat64([rate]) == [0.0]
-        host.initialize()
-        ramp(host, T_ref=1000.0)
-        host.step(0.0, 0.01)
-        host.step(0.01, 0.01)
-        assert host.get("T_ref") == pytest.approx(20.0)
-        host.set(T_ref=5.0)
-        assert host.fmu.getFloat64([rate]) == [1000.0]
-        host.step(0.02, 0.01)
-        assert host.get("T_ref") == pytest.approx(15.0)
-        ramp(host, T_ref=0.0)
-        host.step(0.03, 0.01)
-        assert host.get("T_ref") == pytest.approx(15.0)
-        host.fmu.terminate()
-        message = host.refuses(ramp, host, T_ref=1.0)
-        assert message.startswith("der(T_ref) = 1.0 is refused; a fixed parameter can be set until")
+def test_a_rate_holds_until_it_is_set(motor):
+    rate = motor.fmu.rates[motor.variables["T_ref"].valueReference]
+    assert motor.fmu.getFloat64([rate]) == [0.0]
+    motor.initialize()
+    ramp(motor, T_ref=1000.0)
+    motor.step(0.0, 0.01)
+    motor.step(0.01, 0.01)
+    assert motor.get("T_ref") == pytest.approx(20.0)
+    motor.set(T_ref=5.0)
+    assert motor.fmu.getFloat64([rate]) == [1000.0]
+    motor.step(0.02, 0.01)
+    assert motor.get("T_ref") == pytest.approx(15.0)
+    ramp(motor, T_ref=0.0)
+    motor.step(0.03, 0.01)
+    assert motor.get("T_ref") == pytest.approx(15.0)
+    motor.fmu.terminate()
+    message = motor.refuses(ramp, motor, T_ref=1.0)
+    assert message.startswith("der(T_ref) = 1.0 is refused; a fixed parameter can be set until")
 
 
-def test_rates_are_part_of_a_saved_state_and_forgotten_by_a_reset(fmi3, tmp_path):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        rate = [host.fmu.rates[host.variables["omega_1"].valueReference]]
-        host.initialize(q_omega=0.0)
-        ramp(host, omega_1=1000.0)
-        state = host.fmu.getFMUState()
-        assert rates_of(host, "omega_1_meas") == [1000.0]
-        host.fmu.reset()
-        assert host.fmu.getFloat64(rate) == [0.0]
-        host.fmu.setFMUState(state)
-        host.fmu.freeFMUState(state)
-        assert host.fmu.getFloat64(rate) == [1000.0]
+def test_rates_are_part_of_a_saved_state_and_forgotten_by_a_reset(motor):
+    rate = [motor.fmu.rates[motor.variables["omega_1"].valueReference]]
+    motor.initialize(q_omega=0.0)
+    ramp(motor, omega_1=1000.0)
+    state = motor.fmu.getFMUState()
+    assert rates_of(motor, "omega_1_meas") == [1000.0]
+    motor.fmu.reset()
+    assert motor.fmu.getFloat64(rate) == [0.0]
+    motor.fmu.setFMUState(state)
+    motor.fmu.freeFMUState(state)
+    assert motor.fmu.getFloat64(rate) == [1000.0]
 
 
-def test_one_bad_rate_among_good_values_keeps_them_all_out(fmi3, tmp_path):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        references = [host.variables["T_ref"].valueReference, host.fmu.rates[0]]
-        assert "as derivative of T_ref" in host.refuses(host.fmu.setFloat64, references, [50.0, float("nan")])
-        assert host.fmu.getFloat64(references) == [0.0, 0.0]
+def test_one_bad_rate_among_good_values_keeps_them_all_out(motor):
+    references = [motor.variables["T_ref"].valueReference, motor.fmu.rates[0]]
+    assert "as derivative of T_ref" in motor.refuses(motor.fmu.setFloat64, references, [50.0, float("nan")])
+    assert motor.fmu.getFloat64(references) == [0.0, 0.0]
 
 
-def test_a_truth_value_that_was_refused_with_another_one_does_not_come_back_in_a_step(fmi3, tmp_path):
+def test_a_truth_value_that_was_refused_with_another_one_does_not_come_back_in_a_step(plant):
     """The first instance knows its parameters twice, to see what a tool has written."""
-    with opened(fmi3 / "TwoMassDriveline.fmu", tmp_path) as host:
-        assert "T_mot is of type Real" in host.refuses(
-            host.fmu.setBoolean,
-            [host.variables[name].valueReference for name in ("recorded_load", "T_mot")],
-            [True] * 2,
-        )
-        host.initialize()
-        host.step(0.0, 0.01)
-        assert host.get("recorded_load") is False
+    assert "T_mot is of type Real" in plant.refuses(
+        plant.fmu.setBoolean,
+        [plant.variables[name].valueReference for name in ("recorded_load", "T_mot")],
+        [True] * 2,
+    )
+    plant.initialize()
+    plant.step(0.0, 0.01)
+    assert plant.get("recorded_load") is False
 
 
-def test_a_sampled_block_has_no_rates(fmi3, tmp_path):
-    with opened(fmi3 / "WheelSpeedCan.fmu", tmp_path) as host:
-        last = host.variables["time"].valueReference
-        assert host.fmu.rates == {}
-        assert f"has 0 to {last}" in host.refuses(host.fmu.getFloat64, [last + 1])
+def test_a_sampled_block_has_no_rates(can):
+    last = can.variables["time"].valueReference
+    assert can.fmu.rates == {}
+    assert f"has 0 to {last}" in can.refuses(can.fmu.getFloat64, [last + 1])
 
 
-def test_time_is_told_and_cannot_be_set(fmi3, tmp_path):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize(start_time=1.0)
-        host.step(1.0, 0.25)
-        assert host.get("time") == 1.25
-        assert host.fmu.doStep(1.25, 0.25) == (False, False, False, 1.5)
-        assert host.refuses(host.set, time=0.0) == "time is the independent variable and cannot be set"
+def test_time_is_told_and_cannot_be_set(motor):
+    motor.initialize(start_time=1.0)
+    motor.step(1.0, 0.25)
+    assert motor.get("time") == 1.25
+    assert motor.fmu.doStep(1.25, 0.25) == (False, False, False, 1.5)
+    assert motor.refuses(motor.set, time=0.0) == "time is the independent variable and cannot be set"
 
 
-def test_time_and_rates_have_a_type(fmi3, tmp_path):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize()
-        names = {"time": host.variables["time"].valueReference, "der(T_ref)": host.fmu.rates[0]}
-        for name, reference in names.items():
-            for kind in ("Int32", "Int64", "Boolean", "Float32", "UInt8"):
-                told = host.refuses(getattr(host.fmu, f"get{kind}"), [reference])
-                assert re.fullmatch(rf"{re.escape(name)} is of type (Real|Float64), not \w+", told), kind
-            told = host.refuses(host.fmu.getDirectionalDerivative, [reference], [0], [1.0])
-            assert told == f"{name} has no derivative here, and is none"
+def test_time_and_rates_have_a_type(motor):
+    motor.initialize()
+    names = {"time": motor.variables["time"].valueReference, "der(T_ref)": motor.fmu.rates[0]}
+    for name, reference in names.items():
+        for kind in ("Int32", "Int64", "Boolean", "Float32", "UInt8"):
+            told = motor.refuses(getattr(motor.fmu, f"get{kind}"), [reference])
+            assert re.fullmatch(rf"{re.escape(name)} is of type (Real|Float64), not \w+", told), kind
+        told = motor.refuses(motor.fmu.getDirectionalDerivative, [reference], [0], [1.0])
+        assert told == f"{name} has no derivative here, and is none"
 
 
-def test_an_enumeration_is_no_whole_number_and_a_type_without_variables_has_none(fmi3, tmp_path):
-    with opened(fmi3 / "DampingController.fmu", tmp_path) as host:
-        status = [host.variables["status"].valueReference]
-        host.refuses(host.fmu.getInt32, status)
-        for kind in ("Float32", "Int8", "UInt8", "Int16", "UInt16", "UInt32", "UInt64", "String"):
-            get, put = getattr(host.fmu, f"get{kind}"), getattr(host.fmu, f"set{kind}")
-            assert get([]) == []
-            assert f"of type Integer, not {kind}" in host.refuses(get, status)
-            assert f", not {kind}" in host.refuses(put, status, ["1" if kind == "String" else 1])
-            assert "reference 999 is unknown" in host.refuses(get, [999])
+def test_an_enumeration_is_no_whole_number_and_a_type_without_variables_has_none(controller):
+    status = [controller.variables["status"].valueReference]
+    controller.refuses(controller.fmu.getInt32, status)
+    for kind in ("Float32", "Int8", "UInt8", "Int16", "UInt16", "UInt32", "UInt64", "String"):
+        get, put = getattr(controller.fmu, f"get{kind}"), getattr(controller.fmu, f"set{kind}")
+        assert get([]) == []
+        assert f"of type Integer, not {kind}" in controller.refuses(get, status)
+        assert f", not {kind}" in controller.refuses(put, status, ["1" if kind == "String" else 1])
+        assert "reference 999 is unknown" in controller.refuses(get, [999])
 
 
 @together("value", [2**31, -(2**31) - 1, 2**63 - 1])
-def test_a_whole_number_that_the_fmu_does_not_have_is_out_of_bounds(fmi3, tmp_path, value):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        seed = [host.variables["seed"].valueReference]
-        assert "seed is of type Integer" in host.refuses(host.fmu.setInt64, seed, [value])
+def test_a_whole_number_that_the_fmu_does_not_have_is_out_of_bounds(motor, value):
+    seed = [motor.variables["seed"].valueReference]
+    assert "seed is of type Integer" in motor.refuses(motor.fmu.setInt64, seed, [value])
 
 
 @together("values", [0, 2])
-def test_as_many_values_as_references_are_asked_for(fmi3, tmp_path, values):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        message = host.refuses(host.fmu.getFloat64, [0], values)
-        assert message == (
-            f"fmi2GetFloat64: {values} values are refused; allowed is one for each of the 1 value references"
-        )
+def test_as_many_values_as_references_are_asked_for(motor, values):
+    message = motor.refuses(motor.fmu.getFloat64, [0], values)
+    assert message == (
+        f"fmi2GetFloat64: {values} values are refused; allowed is one for each of the 1 value references"
+    )
 
 
 @together("name", ["Float64", "Int32", "Int64", "Boolean"])
-def test_missing_arrays_are_refused(fmi3, tmp_path, name):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        one, arrays = ctypes.c_size_t(1), ((ctypes.c_uint * 1)(0), (ctypes.c_double * 1)())
-        component = ctypes.c_void_p(host.fmu.component)
-        for verb in ("Get", "Set"):
-            function = ctypes.CDLL(host.fmu.dll._name)[f"fmi3{verb}{name}"]
-            for references, values in ((None, arrays[1]), (arrays[0], None)):
-                assert function(component, references, one, values, one) == ERROR
-                assert "an argument is NULL" in host.message
-            assert function(component, None, ctypes.c_size_t(0), None, ctypes.c_size_t(0)) == OK
-            assert function(None, *arrays[:1], one, arrays[1], one) == ERROR
+def test_missing_arrays_are_refused(motor, name):
+    one, arrays = ctypes.c_size_t(1), ((ctypes.c_uint * 1)(0), (ctypes.c_double * 1)())
+    component = ctypes.c_void_p(motor.fmu.component)
+    for verb in ("Get", "Set"):
+        function = ctypes.CDLL(motor.fmu.dll._name)[f"fmi3{verb}{name}"]
+        for references, values in ((None, arrays[1]), (arrays[0], None)):
+            assert function(component, references, one, values, one) == ERROR
+            assert "an argument is NULL" in motor.message
+        assert function(component, None, ctypes.c_size_t(0), None, ctypes.c_size_t(0)) == OK
+        assert function(None, *arrays[:1], one, arrays[1], one) == ERROR
 
 
 NOT_OFFERED = {
@@ -240,13 +229,12 @@ NOT_OFFERED = {
 
 
 @together("what, function", [(what, name) for what, names in NOT_OFFERED.items() for name in names])
-def test_what_is_not_offered_says_so(fmi3, tmp_path, what, function):
-    with opened(fmi3 / "DampingController.fmu", tmp_path) as host:
-        called = ctypes.CDLL(host.fmu.dll._name)[f"fmi3{function}"]
-        zeros = [ctypes.c_size_t(0)] * 8
-        assert called(ctypes.c_void_p(host.fmu.component), *zeros) == ERROR
-        assert host.message == in_words_of_fmi2(f"fmi3{function} is refused; the FMU has no {what}")
-        assert called(ctypes.c_void_p(), *zeros) == ERROR
+def test_what_is_not_offered_says_so(controller, what, function):
+    called = ctypes.CDLL(controller.fmu.dll._name)[f"fmi3{function}"]
+    zeros = [ctypes.c_size_t(0)] * 8
+    assert called(ctypes.c_void_p(controller.fmu.component), *zeros) == ERROR
+    assert controller.message == in_words_of_fmi2(f"fmi3{function} is refused; the FMU has no {what}")
+    assert called(ctypes.c_void_p(), *zeros) == ERROR
 
 
 def test_what_cannot_be_instantiated_is_said(fmi3, tmp_path):
@@ -283,11 +271,10 @@ def test_what_cannot_be_instantiated_is_said(fmi3, tmp_path):
             assert told[-1].startswith(f"fmi3Instantiate{kind}: the FMU has no ")
 
 
-def test_messages_are_given_out_by_category(fmi3, tmp_path):
-    with opened(fmi3 / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.fmu.setDebugLogging(False, ["logStatusError"])
-        with pytest.raises(FMICallException):
-            host.fmu.getFloat64([99])
-        assert host.message == ""
-        host.fmu.setDebugLogging(True, [])
-        assert "log category logEvents is unknown" in host.refuses(host.fmu.setDebugLogging, True, ["logEvents"])
+def test_messages_are_given_out_by_category(motor):
+    motor.fmu.setDebugLogging(False, ["logStatusError"])
+    with pytest.raises(FMICallException):
+        motor.fmu.getFloat64([99])
+    assert motor.message == ""
+    motor.fmu.setDebugLogging(True, [])
+    assert "log category logEvents is unknown" in motor.refuses(motor.fmu.setDebugLogging, True, ["logEvents"])

@@ -141,23 +141,6 @@ def test_it_is_that_of_python_bit_by_bit(integrator: MakeIntegrator, T_mot: floa
     )
 
 
-@settings(max_examples=30)
-@pytest.mark.slow
-@given(
-    T_mot=st.floats(-2000.0, 2000.0),
-    T_brake=st.floats(0.0, 20000.0),
-    v=st.floats(-20.0, 20.0),
-    z_br=st.floats(1e-4, 1e-3),
-    i=st.floats(1.0, 3.0),
-)
-def test_it_is_that_of_python_bit_by_bit_where_the_block_is_stiff(
-    integrator: MakeIntegrator, T_mot: float, T_brake: float, v: float, z_br: float, i: float
-) -> None:
-    u, x = driveline.Input(T_mot=T_mot, T_brake=T_brake), LIVELY._replace(v=v)
-    p = P._replace(recorded_load=False, z_br=z_br, J_2=0.001, i=i)
-    assert integrator(driveline.BLOCK).advance(x, u, p, 0.01) == Integrator(driveline.BLOCK).advance(x, u, p, 0.01)
-
-
 Looked = Callable[[MakeIntegrator], tuple[set[Body], set[Body]]]
 
 
@@ -251,35 +234,6 @@ def test_chatter_is_given_up_where_python_gives_up(integrator: MakeIntegrator, w
             make(chattering).advance(Body(0.0, 0.0, 0.0)._replace(**{which: 0.03}), 0.0, Nothing(), 0.1)
         requested.append(set(looks_at))
     assert requested[0] == requested[1]
-
-
-@settings(max_examples=40)
-@given(kinks=st.integers(1, 80), jump=st.floats(0.1, 100.0))
-@pytest.mark.slow
-def test_kinks_without_indicators_cost_as_many_steps_as_in_python(
-    integrator: MakeIntegrator, kinks: int, jump: float
-) -> None:
-    """Until there are too many, and the rest is left to the implicit method."""
-    kinked = block(lambda x, u, p: Body(1.0, jump * (int(10.0 * kinks * x.x) % 2), 0.0), lambda x: 1.0)
-    assert end_of(integrator, kinked) == end_of(Integrator, kinked)
-
-
-@given(
-    turn=st.floats(0.001, 0.099),
-    depth=st.floats(-1e-3, 1e-2),
-    side=st.sampled_from([-1.0, 1.0]),
-    other=st.floats(-0.01, 0.3),
-)
-@pytest.mark.slow
-def test_it_looks_for_an_excursion_where_python_does(
-    integrator: MakeIntegrator, turn: float, depth: float, side: float, other: float
-) -> None:
-    """A body thrown up to `depth` beyond a zero, which turns at the time `turn`; another zero is on its way."""
-    g = 50.0
-    top = side * depth
-    start = Body(top - side * 0.5 * g * turn**2, side * g * turn, 0.0)
-    looked_at = looks(lambda x: Body(x.v, -side * g, 0.0), start, lambda x: x.x, lambda x: x.x + side * other)
-    assert looked_at(integrator) == looked_at(Integrator)
 
 
 @together("power", [6, 12, 60, 150, 290])

@@ -44,6 +44,19 @@ def exchanged(folder, tmp_path, name, **start):
         yield host
 
 
+@pytest.fixture
+def driveline(folder, tmp_path):
+    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
+        yield host
+
+
+@pytest.fixture
+def integrating(driveline):
+    """In continuous-time mode."""
+    driveline.fmu.enterContinuousTimeMode()
+    return driveline
+
+
 def given_out(host, function, count):
     """The numbers that a function gives out; None where it discards."""
     room = (ctypes.c_double * count)()
@@ -355,59 +368,51 @@ def test_the_noise_of_the_motor_changes_at_events_that_are_announced(folder, tmp
 # calls that make no sense
 
 
-def test_a_wrong_number_of_states_is_refused(folder, tmp_path):
-    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
-        host.fmu.enterContinuousTimeMode()
-        before = states(host)
-        for function, right, what in (
-            ("fmi2SetContinuousStates", 6, "states"),
-            ("fmi2GetContinuousStates", 6, "states"),
-            ("fmi2GetDerivatives", 6, "derivatives"),
-            ("fmi2GetNominalsOfContinuousStates", 6, "nominal values"),
-            ("fmi2GetEventIndicators", 5, "event indicators"),
-        ):
-            for count in (right - 1, right + 1):
-                assert call(host, function, ROOM, ctypes.c_size_t(count)) == ERROR
-                assert host.message == f"{count} {what} are refused; TwoMassDriveline has {right}"
-            assert call(host, function, None, ctypes.c_size_t(right)) == ERROR
-            assert host.message == f"{function}: an argument is NULL"
-        assert states(host) == before
+def test_a_wrong_number_of_states_is_refused(integrating):
+    before = states(integrating)
+    for function, right, what in (
+        ("fmi2SetContinuousStates", 6, "states"),
+        ("fmi2GetContinuousStates", 6, "states"),
+        ("fmi2GetDerivatives", 6, "derivatives"),
+        ("fmi2GetNominalsOfContinuousStates", 6, "nominal values"),
+        ("fmi2GetEventIndicators", 5, "event indicators"),
+    ):
+        for count in (right - 1, right + 1):
+            assert call(integrating, function, ROOM, ctypes.c_size_t(count)) == ERROR
+            assert integrating.message == f"{count} {what} are refused; TwoMassDriveline has {right}"
+        assert call(integrating, function, None, ctypes.c_size_t(right)) == ERROR
+        assert integrating.message == f"{function}: an argument is NULL"
+    assert states(integrating) == before
 
 
 @together("value", [math.nan, math.inf, -math.inf])
-def test_a_state_that_is_no_number_is_discarded_so_that_the_solver_may_try_another(folder, tmp_path, value):
-    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
-        host.fmu.enterContinuousTimeMode()
-        before = states(host)
-        message = host.refuses(set_states, host, [*before[:2], value, *before[3:]])
-        assert message == f"x.phi = {value!r} rad is refused; allowed is any finite number"
-        assert host.status == DISCARD
-        assert states(host) == before
+def test_a_state_that_is_no_number_is_discarded_so_that_the_solver_may_try_another(integrating, value):
+    before = states(integrating)
+    message = integrating.refuses(set_states, integrating, [*before[:2], value, *before[3:]])
+    assert message == f"x.phi = {value!r} rad is refused; allowed is any finite number"
+    assert integrating.status == DISCARD
+    assert states(integrating) == before
 
 
-def test_derivatives_that_are_no_numbers_are_discarded(folder, tmp_path):
-    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
-        host.fmu.enterContinuousTimeMode()
-        set_states(host, [1e308, -1e308, 1e308, 0.0, 0.0, 0.0])
-        message = host.refuses(rates, host)
-        assert message == "der(x.omega_1) = -inf rad/s2 is refused; allowed is any finite number"
-        assert host.status == DISCARD
+def test_derivatives_that_are_no_numbers_are_discarded(integrating):
+    set_states(integrating, [1e308, -1e308, 1e308, 0.0, 0.0, 0.0])
+    message = integrating.refuses(rates, integrating)
+    assert message == "der(x.omega_1) = -inf rad/s2 is refused; allowed is any finite number"
+    assert integrating.status == DISCARD
 
 
 @together("time", [math.nan, math.inf])
-def test_a_time_that_is_no_number_is_refused(folder, tmp_path, time):
-    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
-        message = host.refuses(host.fmu.setTime, time)
-        assert message == f"time = {time!r} s is refused; allowed is any finite number"
+def test_a_time_that_is_no_number_is_refused(driveline, time):
+    message = driveline.refuses(driveline.fmu.setTime, time)
+    assert message == f"time = {time!r} s is refused; allowed is any finite number"
 
 
-def test_a_parameter_is_refused_while_the_host_integrates_and_an_input_is_not(folder, tmp_path):
-    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
-        for change in (lambda: None, host.fmu.enterContinuousTimeMode):
-            change()
-            assert "C = 100.0 is refused; a fixed parameter can be set until" in host.refuses(host.set, C=100.0)
-            host.set(T_mot=11.0)
-            assert rates(host)[0] == pytest.approx(11.0 / 0.055)
+def test_a_parameter_is_refused_while_the_host_integrates_and_an_input_is_not(driveline):
+    for change in (lambda: None, driveline.fmu.enterContinuousTimeMode):
+        change()
+        assert "C = 100.0 is refused; a fixed parameter can be set until" in driveline.refuses(driveline.set, C=100.0)
+        driveline.set(T_mot=11.0)
+        assert rates(driveline)[0] == pytest.approx(11.0 / 0.055)
 
 
 def test_a_saved_state_holds_mode_time_states_and_sides(folder, tmp_path):
@@ -441,18 +446,15 @@ def test_a_saved_state_of_the_other_kind_is_refused(folder, tmp_path, kind):
         host.fmu.freeFMUstate(state)
 
 
-def test_an_output_that_is_no_number_is_discarded(folder, tmp_path):
+def test_an_output_that_is_no_number_is_discarded(integrating):
     """No step has looked at it, and a solver may try any state."""
-    with exchanged(folder, tmp_path, "TwoMassDriveline") as host:
-        host.fmu.newDiscreteStates()
-        host.fmu.enterContinuousTimeMode()
-        x = states(host)
-        set_states(host, [1e308] * len(x))
-        assert re.fullmatch(r"T_gear is refused; it would be -?(inf|nan)", host.refuses(host.get, "T_gear"))
-        assert host.status == fmi2Discard
-        assert host.get("T_mot") == 0.0
-        set_states(host, x)
-        assert abs(host.get("T_gear")) < 1e3
+    x = states(integrating)
+    set_states(integrating, [1e308] * len(x))
+    assert re.fullmatch(r"T_gear is refused; it would be -?(inf|nan)", integrating.refuses(integrating.get, "T_gear"))
+    assert integrating.status == fmi2Discard
+    assert integrating.get("T_mot") == 0.0
+    set_states(integrating, x)
+    assert abs(integrating.get("T_gear")) < 1e3
 
 
 # a host that integrates

@@ -12,7 +12,7 @@ import fmpy
 import pytest
 from fmpy.build import build_platform_binary
 
-from driveline.fmus.building.builds import NotPossible, build_fmus, builders
+from driveline.fmus.building.builds import NotPossible, build_fmus
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native import compiler
 from tests import ROOT
@@ -98,13 +98,6 @@ def test_the_description_differs_from_that_of_the_python_build_only_where_the_bu
 
     for name in FMUS:
         assert shown(native, name) == shown(built, name)
-
-
-def test_without_a_compiler_it_is_said_and_the_other_build_is_made(monkeypatch):
-    monkeypatch.setenv("CC", "no-such-compiler")
-    with pytest.raises(NotPossible, match="there is no C compiler"):
-        builders("native")
-    assert len(builders(None)) == 1
 
 
 @together(

@@ -17,7 +17,6 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
-from tests.together import together
 
 
 def python_of(page: str, beginning: str = "") -> list[str]:
@@ -62,14 +61,6 @@ def test_it_gains_the_speed_that_its_masses_let_it(vehicle: Path, both_built: Pa
     impulse = np.trapezoid(results["motor.T_mot"], results["time"])
     # the motor's torque is held over each step of 1 ms, not moved along a line
     assert momentum[-1] - momentum[0] == pytest.approx(impulse, rel=2e-4)
-
-
-def test_a_file_without_an_fmu_is_refused(tmp_path: Path) -> None:
-    file = tmp_path / "nothing.py"
-    file.write_text("BLOCK = None\n", encoding="utf-8")
-    done = build(file, tmp_path, "--build", "native")
-    assert done.returncode == 2
-    assert "has no line `FMU = Fmu(BLOCK, stop_time=10.0)`" in done.stderr
 
 
 OF_THE_BUS = (
@@ -122,55 +113,37 @@ def test_a_controller_of_the_users_own_damps(both_built: Path, tmp_path: Path) -
     assert damped.overshoot < 0.7 * free.overshoot
 
 
-def test_a_file_that_ends_the_process_is_refused(tmp_path: Path) -> None:
-    file = tmp_path / "leaves.py"
-    file.write_text("raise SystemExit(0)\n", encoding="utf-8")
-    done = build(file, tmp_path, "--build", "native")
-    assert done.returncode == 2
-    assert "cannot be run: SystemExit: 0" in done.stderr
-
-
-def test_a_file_whose_name_is_taken_is_refused(tmp_path: Path) -> None:
-    file = tmp_path / "json.py"
-    file.write_text(EXAMPLE, encoding="utf-8")
-    done = build(file, tmp_path, "--build", "native")
-    assert done.returncode == 2
-    assert "there is a module called json" in done.stderr
-
-
-@together("builds", ["python", "both"])
-def test_a_block_of_a_file_has_no_python_build(tmp_path: Path, builds: str) -> None:
-    file = tmp_path / "my_vehicle.py"
-    file.write_text(EXAMPLE, encoding="utf-8")
-    done = build(file, tmp_path, "--build", builds)
-    assert done.returncode == 2
-    assert "MyVehicle has a native build only" in done.stderr
-
-
 def line_of(piece: str) -> int:
     """Of the example, from 1 on."""
     return EXAMPLE[: EXAMPLE.index(piece)].count("\n") + 1
 
 
 @pytest.mark.parametrize(
-    ("text", "message"),
+    ("name", "text", "builds", "message"),
     [
-        ("import nonsense", "my_vehicle.py, line 1: it cannot be run: ModuleNotFoundError: No module named 'nonsense'"),
-        ("\nFMU = (", "my_vehicle.py, line 2: it cannot be run: SyntaxError"),
+        ("nothing", "BLOCK = None\n", "native", "has no line `FMU = Fmu(BLOCK, stop_time=10.0)`"),
+        ("leaves", "raise SystemExit(0)\n", "native", "cannot be run: SystemExit: 0"),
+        ("json", EXAMPLE, "native", "there is a module called json"),
+        ("my_vehicle", EXAMPLE, "python", "MyVehicle has a native build only"),
+        ("my_vehicle", EXAMPLE, "both", "MyVehicle has a native build only"),
+        ("my_vehicle", "import nonsense", "native", "my_vehicle.py, line 1: it cannot be run: ModuleNotFoundError: No"),
+        ("my_vehicle", "\nFMU = (", "native", "my_vehicle.py, line 2: it cannot be run: SyntaxError"),
         (
-            EXAMPLE.replace("p.r * braking_force", "p.s * braking_force"),
+            *("my_vehicle", EXAMPLE.replace("p.r * braking_force", "p.s * braking_force"), "native"),
             f"line {line_of('p.r * braking_force')}: MyVehicle cannot be built: AttributeError",
         ),
         (
-            EXAMPLE.replace("operators.tanh(x.v / p.v_rr)", "(x.v > 0.0 and 1.0)"),
+            *("my_vehicle", EXAMPLE.replace("operators.tanh(x.v / p.v_rr)", "(x.v > 0.0 and 1.0)"), "native"),
             f"line {line_of('operators.tanh(x.v / p.v_rr)')}: MyVehicle cannot be built: TypeError: a model",
         ),
     ],
 )
-def test_what_is_wrong_with_a_file_is_said_in_one_line(tmp_path: Path, text: str, message: str) -> None:
-    file = tmp_path / "my_vehicle.py"
+def test_what_is_wrong_with_a_file_is_said_in_one_line(
+    tmp_path: Path, name: str, text: str, builds: str, message: str
+) -> None:
+    file = tmp_path / f"{name}.py"
     file.write_text(text, encoding="utf-8")
-    done = build(file, tmp_path)
+    done = build(file, tmp_path, "--build", builds)
     assert done.returncode == 2
     assert message in done.stderr
     assert "Traceback" not in done.stderr

@@ -35,80 +35,72 @@ def real(host, causality):
     return [n for n in host.names(causality) if host.variables[n].type == "Real"]
 
 
-def test_a_ramp_in_one_step_is_that_of_many_small_stairs(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize()
-        ramp(host, T_ref=1000.0)
-        host.step(0.0, 0.02)
-        ramped = host.get("T_mot")
-        assert host.get("T_ref") == pytest.approx(20.0, rel=1e-12), "the input is where the ramp led it"
-        host.fmu.reset()
-        host.initialize()
-        stairs = 2000
-        for k in range(stairs):
-            host.set(T_ref=20.0 * (k + 0.5) / stairs)
-            host.step(k * 0.02 / stairs, 0.02 / stairs)
-        assert ramped == pytest.approx(host.get("T_mot"), rel=1e-5)
+def test_a_ramp_in_one_step_is_that_of_many_small_stairs(motor):
+    motor.initialize()
+    ramp(motor, T_ref=1000.0)
+    motor.step(0.0, 0.02)
+    ramped = motor.get("T_mot")
+    assert motor.get("T_ref") == pytest.approx(20.0, rel=1e-12), "the input is where the ramp led it"
+    motor.fmu.reset()
+    motor.initialize()
+    stairs = 2000
+    for k in range(stairs):
+        motor.set(T_ref=20.0 * (k + 0.5) / stairs)
+        motor.step(k * 0.02 / stairs, 0.02 / stairs)
+    assert ramped == pytest.approx(motor.get("T_mot"), rel=1e-5)
 
 
-def test_a_ramp_lasts_for_one_step(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize()
-        ramp(host, T_ref=1000.0)
-        host.step(0.0, 0.01)
-        host.step(0.01, 0.01)
-        assert host.get("T_ref") == pytest.approx(10.0)
-        ramp(host, T_ref=1000.0)
-        host.set(T_ref=5.0)
-        host.step(0.02, 0.01)
-        assert host.get("T_ref") == 5.0
+def test_a_ramp_lasts_for_one_step(motor):
+    motor.initialize()
+    ramp(motor, T_ref=1000.0)
+    motor.step(0.0, 0.01)
+    motor.step(0.01, 0.01)
+    assert motor.get("T_ref") == pytest.approx(10.0)
+    ramp(motor, T_ref=1000.0)
+    motor.set(T_ref=5.0)
+    motor.step(0.02, 0.01)
+    assert motor.get("T_ref") == 5.0
 
 
-def test_a_ramp_out_of_the_range_is_refused_and_nothing_moves(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize(T_ref=1990.0)
-        ramp(host, T_ref=1000.0)
-        before = host.outputs()
-        message = host.refuses(host.step, 0.0, 0.02)
-        assert message == "T_ref = 2010.0 N.m at the end of the step is refused; allowed is -2000 to 2000 N.m"
-        assert (host.outputs(), host.get("T_ref")) == (before, 1990.0)
-        host.step(0.0, 0.005)
+def test_a_ramp_out_of_the_range_is_refused_and_nothing_moves(motor):
+    motor.initialize(T_ref=1990.0)
+    ramp(motor, T_ref=1000.0)
+    before = motor.outputs()
+    message = motor.refuses(motor.step, 0.0, 0.02)
+    assert message == "T_ref = 2010.0 N.m at the end of the step is refused; allowed is -2000 to 2000 N.m"
+    assert (motor.outputs(), motor.get("T_ref")) == (before, 1990.0)
+    motor.step(0.0, 0.005)
 
 
 @together("sign", [-1.0, 1.0])
-def test_a_ramp_may_end_at_the_bound(native, tmp_path, sign):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize()
-        ramp(host, T_ref=sign * 2000.0)
-        host.step(0.0, 1.0)
-        assert host.get("T_ref") == sign * 2000.0
+def test_a_ramp_may_end_at_the_bound(motor, sign):
+    motor.fmu.reset()
+    motor.initialize()
+    ramp(motor, T_ref=sign * 2000.0)
+    motor.step(0.0, 1.0)
+    assert motor.get("T_ref") == sign * 2000.0
 
 
-def test_after_a_ramp_the_outputs_no_longer_follow_it(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize(q_omega=0.0)
-        ramp(host, omega_1=1000.0)
-        assert rates_of(host, "omega_1_meas") == [1000.0]
-        host.step(0.0, 0.01)
-        assert rates_of(host, "omega_1_meas") == [0.0]
+def test_after_a_ramp_the_outputs_no_longer_follow_it(motor):
+    motor.initialize(q_omega=0.0)
+    ramp(motor, omega_1=1000.0)
+    assert rates_of(motor, "omega_1_meas") == [1000.0]
+    motor.step(0.0, 0.01)
+    assert rates_of(motor, "omega_1_meas") == [0.0]
 
 
 @together("rate", [math.nan, math.inf])
-def test_a_rate_that_is_not_finite_is_refused(native, tmp_path, rate):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        assert "as derivative of T_ref" in host.refuses(ramp, host, T_ref=rate)
-        assert "T_mot is not an input" in host.refuses(ramp, host, T_mot=1.0)
-        ramp(host, T_ref=math.copysign(sys.float_info.max, rate))
+def test_a_rate_that_is_not_finite_is_refused(motor, rate):
+    assert "as derivative of T_ref" in motor.refuses(ramp, motor, T_ref=rate)
+    assert "T_mot is not an input" in motor.refuses(ramp, motor, T_mot=1.0)
+    ramp(motor, T_ref=math.copysign(sys.float_info.max, rate))
 
 
-def test_only_first_derivatives_exist(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize()
-        for call in (host.fmu.setRealInputDerivatives, host.fmu.getRealOutputDerivatives):
-            values = [[0.0]] if call == host.fmu.setRealInputDerivatives else []
-            assert "order 2 is refused" in host.refuses(call, [0], [2], *values)
-            values = [[0.0]] if values else []
-            assert "reference 99" in host.refuses(call, [99], [1], *values)
+def test_only_first_derivatives_exist(motor):
+    motor.initialize()
+    for call, values in ((motor.fmu.setRealInputDerivatives, [[0.0]]), (motor.fmu.getRealOutputDerivatives, [])):
+        assert "order 2 is refused" in motor.refuses(call, [0], [2], *values)
+        assert "reference 99" in motor.refuses(call, [99], [1], *values)
 
 
 @every_continuous
@@ -168,34 +160,31 @@ def test_a_derivative_that_is_no_number_is_refused_and_not_given_out(native, tmp
         assert along(unknown[:1], known, [largest]) == [0.0]
 
 
-def test_a_rate_of_an_output_that_is_no_number_is_refused(native, tmp_path):
-    with opened(native / "TwoMassDriveline.fmu", tmp_path) as host:
-        host.initialize()
-        ramp(host, slope=sys.float_info.max)
-        message = "the derivative of a_body is refused; it would be -inf"
-        assert host.refuses(rates_of, host, "omega_1", "a_body") == message
+def test_a_rate_of_an_output_that_is_no_number_is_refused(plant):
+    plant.initialize()
+    ramp(plant, slope=sys.float_info.max)
+    message = "the derivative of a_body is refused; it would be -inf"
+    assert plant.refuses(rates_of, plant, "omega_1", "a_body") == message
 
 
-def test_after_initialization_inputs_and_states_can_be_known(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.initialize()
-        assert derivative(host, "omega_1_meas", "omega_1") == 0.0, "it is rounded"
-        message = host.refuses(derivative, host, "T_mot", "tau")
-        assert message == "tau cannot be a known of a directional derivative; allowed is any input or state"
-        message = host.refuses(derivative, host, "T_ref", "T_ref")
-        allowed = "allowed is any output or derivative of a state"
-        assert message == f"T_ref cannot be the unknown of a directional derivative; {allowed}"
+def test_after_initialization_inputs_and_states_can_be_known(motor):
+    motor.initialize()
+    assert derivative(motor, "omega_1_meas", "omega_1") == 0.0, "it is rounded"
+    message = motor.refuses(derivative, motor, "T_mot", "tau")
+    assert message == "tau cannot be a known of a directional derivative; allowed is any input or state"
+    message = motor.refuses(derivative, motor, "T_ref", "T_ref")
+    allowed = "allowed is any output or derivative of a state"
+    assert message == f"T_ref cannot be the unknown of a directional derivative; {allowed}"
 
 
-def test_during_initialization_parameters_can_be_known_too(native, tmp_path):
-    with opened(native / "MotorTorqueLoop.fmu", tmp_path) as host:
-        host.fmu.setupExperiment()
-        host.fmu.enterInitializationMode()
-        allowed = "allowed is any output, state or its derivative"
-        message = host.refuses(derivative, host, "T_ref", "T_ref")
-        assert message == f"T_ref cannot be the unknown of a directional derivative; {allowed}"
-        message = host.refuses(derivative, host, "T_mot", "T_mot")
-        assert message == "T_mot cannot be a known of a directional derivative; allowed is any input or parameter"
+def test_during_initialization_parameters_can_be_known_too(motor):
+    motor.fmu.setupExperiment()
+    motor.fmu.enterInitializationMode()
+    allowed = "allowed is any output, state or its derivative"
+    message = motor.refuses(derivative, motor, "T_ref", "T_ref")
+    assert message == f"T_ref cannot be the unknown of a directional derivative; {allowed}"
+    message = motor.refuses(derivative, motor, "T_mot", "T_mot")
+    assert message == "T_mot cannot be a known of a directional derivative; allowed is any input or parameter"
 
 
 @together("name", [name for name in FMUS if name not in CONTINUOUS])

@@ -184,13 +184,3 @@ def test_the_next_tick_of_a_state_is_a_sample_away_at_most(request, unpacked, bu
     with opened(folder / "WheelSpeedCan.fmu", unpacked[build] / "WheelSpeedCan") as host:
         with_content("to_tick", to_tick, "WheelSpeedCan")(host)
         host.step(1.01, 0.01)
-
-
-def test_every_sentence_is_said():
-    sentences = {
-        name for name, text in vars(protocol).items() if isinstance(text, str) and " " in text and name.isupper()
-    }
-    elsewhere = {"FOREIGN_STATE"}  # see test_state.py
-    elsewhere |= {"NOT_INTEGRABLE", "TOO_MUCH_WORK", "NOT_FINITE"}  # see test_no_step_to_nowhere.py
-    elsewhere |= {"ANY_NUMBER", "FROM_START_ON", "THE_START_TIME", "WITHIN_A_SAMPLE"}  # parts of BAD_STATE
-    assert {refusal.sentence for refusal in REFUSALS} | elsewhere == sentences

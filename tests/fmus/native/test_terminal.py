@@ -39,6 +39,15 @@ def node(sender, tmp_path) -> Node:
     return Node(sender, tmp_path)
 
 
+@pytest.fixture
+def receiving(node) -> Node:
+    """In event mode, with nothing left to send."""
+    node.start()
+    node.flush()
+    node.fmu.enterEventMode()
+    return node
+
+
 def started(node: Node, **values: Any) -> Node:
     """In step mode."""
     node.start(**values)
@@ -149,7 +158,7 @@ def test_the_clock_is_active_in_event_mode_alone_and_until_that_is_updated(node)
         assert node.sent() == b""
     assert node.sent() == b""
     node.fmu.enterEventMode()
-    assert len(node.sent()) == len(node.sent()) == 20
+    assert len(node.sent()) == len(node.sent()) == 20, "until the update"
     assert not node.update()
     assert node.sent() == b""
     node.fmu.enterStepMode()
@@ -178,26 +187,13 @@ def test_without_event_mode_it_is_the_fmu_without_terminal(fmi3, sender, tmp_pat
     assert refused(ours, ours.fmu.enterEventMode) == message
 
 
-def test_what_is_not_for_it_is_passed_over(node):
-    node.start()
-    node.flush()
-    node.fmu.enterEventMode()
-    known = {
-        FORMAT_ERROR: 2,
-        CAN_TRANSMIT: 8,
-        0x11: 9,
-        0x12: 14,
-        CONFIRM: 4,
-        0x30: 4,
-        0x31: 7,
-        0x40: 1,
-        0x41: 1,
-        0x42: 0,
-    }
-    node.receive(b"".join(written(Operation(code, bytes(least))) for code, least in known.items()))
-    assert node.fmu.getClock([node.members["Rx_Clock"]]) == [True]
-    assert not node.update()
-    assert node.fmu.getClock([node.members["Rx_Clock"]]) == [False]
+def test_what_is_not_for_it_is_passed_over(receiving):
+    known = {FORMAT_ERROR: 2, CAN_TRANSMIT: 8, CONFIRM: 4}
+    known |= {0x11: 9, 0x12: 14, 0x30: 4, 0x31: 7, 0x40: 1, 0x41: 1, 0x42: 0}
+    receiving.receive(b"".join(written(Operation(code, bytes(least))) for code, least in known.items()))
+    assert receiving.fmu.getClock([receiving.members["Rx_Clock"]]) == [True]
+    assert not receiving.update()
+    assert receiving.fmu.getClock([receiving.members["Rx_Clock"]]) == [False]
 
 
 @pytest.mark.parametrize(
@@ -211,12 +207,9 @@ def test_what_is_not_for_it_is_passed_over(node):
         struct.pack("<I", CONFIRM),
     ],
 )
-def test_what_is_no_operation_is_sent_back_and_what_is_before_it_counts(node, data):
-    node.start()
-    node.flush()
-    node.fmu.enterEventMode()
-    node.receive(written(Operation(CONFIRM, bytes(4))) + data)
-    assert node.flush() == [Operation(FORMAT_ERROR, struct.pack("<H", len(data)) + data)]
+def test_what_is_no_operation_is_sent_back_and_what_is_before_it_counts(receiving, data):
+    receiving.receive(written(Operation(CONFIRM, bytes(4))) + data)
+    assert receiving.flush() == [Operation(FORMAT_ERROR, struct.pack("<H", len(data)) + data)]
 
 
 def test_of_any_bytes_what_is_no_operation_comes_back(node):
@@ -241,21 +234,10 @@ def test_of_any_bytes_what_is_no_operation_comes_back(node):
     answered()
 
 
-def test_the_clock_of_what_is_sent_stays_active_until_the_update(node):
-    node.start()
-    clock = [node.members["Tx_Clock"]]
-    assert [node.fmu.getClock(clock) for _ in range(3)] == [[True]] * 3
-    assert not node.update()
-    assert node.fmu.getClock(clock) == [False]
-
-
-def test_what_comes_without_its_clock_is_not_looked_at(node):
-    node.start()
-    node.flush()
-    node.fmu.enterEventMode()
-    node.fmu.setBinary([node.members["Rx_Data"]], [b"nonsense"])
-    assert node.fmu.getBinary([node.members["Rx_Data"]]) == [b"nonsense"]
-    assert node.flush() == []
+def test_what_comes_without_its_clock_is_not_looked_at(receiving):
+    receiving.fmu.setBinary([receiving.members["Rx_Data"]], [b"nonsense"])
+    assert receiving.fmu.getBinary([receiving.members["Rx_Data"]]) == [b"nonsense"]
+    assert receiving.flush() == []
 
 
 def test_as_much_as_there_is_room_for_can_come_in(node):

@@ -4,6 +4,8 @@ import ctypes
 import math
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from itertools import count
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -61,18 +63,15 @@ class Tool:
 @pytest.fixture
 def bench(request: Any, tmp_path: Path) -> Iterator[Any]:
     """Opens an FMU of a build, with a tool."""
-    hosts = []
+    numbers = count()
+    with ExitStack() as stack:
 
-    def begin(name: str, build: str) -> tuple[Host, Tool]:
-        path = request.getfixturevalue(build) / f"{name}.fmu"
-        opening = opened(path, tmp_path / f"{name}_{len(hosts)}")
-        hosts.append(opening)
-        host = opening.__enter__()
-        return host, Tool(path, PLATFORMS[build], host)
+        def begin(name: str, build: str) -> tuple[Host, Tool]:
+            path = request.getfixturevalue(build) / f"{name}.fmu"
+            host = stack.enter_context(opened(path, tmp_path / f"{name}_{next(numbers)}"))
+            return host, Tool(path, PLATFORMS[build], host)
 
-    yield begin
-    for opening in hosts:
-        opening.__exit__(None, None, None)
+        yield begin
 
 
 def inputs(k: int) -> Mapping[str, float]:

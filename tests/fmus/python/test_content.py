@@ -1,9 +1,11 @@
 """A saved state of the Python build with a right checksum and a form that no instance can have written is refused."""
 
 import json
+import math
 
 import pytest
 
+from driveline.fmus.python import content
 from tests.fmus.forged import with_checksum
 from tests.fmus.host import opened
 from tests.together import together
@@ -61,3 +63,9 @@ def test_a_form_that_no_instance_can_have_written_is_refused(host, change):
     message = host.refuses(host.fmu.deSerializeFMUstate, change(saved))
     assert message == "the FMU state is refused: its bytes are damaged"
     host.fmu.setFMUstate(host.fmu.deSerializeFMUstate(saved))
+
+
+@together("value", [0.1, -0.0, 5e-324, 1.7976931348623157e308, math.inf, math.nan, 3, True])
+def test_numbers_keep_type_and_bits(value):
+    (restored,) = content.unpack("build", content.pack("build", (value,)))
+    assert (type(restored), repr(restored)) == (type(value), repr(value))

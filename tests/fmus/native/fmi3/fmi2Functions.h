@@ -34,40 +34,34 @@ static inline fmi2Component fmi2Instantiate(
         name, token, resources, visible != 0, logging != 0, false, false, NULL, 0, environment, log, NULL);
 }
 
+#define PASSED(function, parameters, call)        \
+    static inline fmi2Status function parameters  \
+    {                                             \
+        return in_fmi2(call);                     \
+    }
+
 static inline void fmi2FreeInstance(fmi2Component c)
 {
     fmi3FreeInstance(c);
 }
 
-static inline fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String names[])
-{
-    return in_fmi2(fmi3SetDebugLogging(c, on != 0, count, names));
-}
+PASSED(
+    fmi2SetDebugLogging, (fmi2Component c, fmi2Boolean on, size_t count, const fmi2String names[]),
+    fmi3SetDebugLogging(c, on != 0, count, names))
 
 /* Here the start time is told by what enters initialization mode. */
-static inline fmi2Status fmi2SetupExperiment(
-    fmi2Component c, fmi2Boolean has_tolerance, double tolerance, double start, fmi2Boolean has_stop, double stop)
-{
-    return in_fmi2(fmi3EnterInitializationMode(c, has_tolerance != 0, tolerance, start, has_stop != 0, stop));
-}
+PASSED(
+    fmi2SetupExperiment,
+    (fmi2Component c, fmi2Boolean has_tolerance, double tolerance, double start, fmi2Boolean has_stop, double stop),
+    fmi3EnterInitializationMode(c, has_tolerance != 0, tolerance, start, has_stop != 0, stop))
+PASSED(fmi2EnterInitializationMode, (fmi2Component c), fmi3EnterInitializationMode(c, false, 0.0, 0.0, false, 0.0))
 
-static inline fmi2Status fmi2EnterInitializationMode(fmi2Component c)
-{
-    return in_fmi2(fmi3EnterInitializationMode(c, false, 0.0, 0.0, false, 0.0));
-}
-
-#define SAME(function, of_fmi3)                          \
-    static inline fmi2Status function(fmi2Component c)   \
-    {                                                    \
-        return in_fmi2(of_fmi3(c));                      \
-    }
-
-SAME(fmi2ExitInitializationMode, fmi3ExitInitializationMode)
-SAME(fmi2Terminate, fmi3Terminate)
-SAME(fmi2Reset, fmi3Reset)
-SAME(fmi2CancelStep, fmi3EnterConfigurationMode)
-SAME(fmi2EnterEventMode, fmi3EnterEventMode)
-SAME(fmi2EnterContinuousTimeMode, fmi3EnterContinuousTimeMode)
+PASSED(fmi2ExitInitializationMode, (fmi2Component c), fmi3ExitInitializationMode(c))
+PASSED(fmi2Terminate, (fmi2Component c), fmi3Terminate(c))
+PASSED(fmi2Reset, (fmi2Component c), fmi3Reset(c))
+PASSED(fmi2CancelStep, (fmi2Component c), fmi3EnterConfigurationMode(c))
+PASSED(fmi2EnterEventMode, (fmi2Component c), fmi3EnterEventMode(c))
+PASSED(fmi2EnterContinuousTimeMode, (fmi2Component c), fmi3EnterContinuousTimeMode(c))
 
 #define ACCESS(function, of_fmi3, Type)                                                                             \
     static inline fmi2Status function(fmi2Component c, const fmi2ValueReference vr[], size_t count, Type values[])  \
@@ -112,49 +106,27 @@ static inline fmi2Status fmi2SetRealInputDerivatives(
     return in_fmi2(fmi3SetFloat64(c, vr ? rates : NULL, count, values, count));
 }
 
-static inline fmi2Status fmi2GetRealOutputDerivatives(
-    fmi2Component c, const fmi2ValueReference vr[], size_t count, const int orders[], double values[])
-{
-    return in_fmi2(fmi3GetOutputDerivatives(c, vr, count, orders, values, count));
-}
-
-static inline fmi2Status fmi2GetDirectionalDerivative(
-    fmi2Component c, const fmi2ValueReference unknowns[], size_t count, const fmi2ValueReference knowns[],
-    size_t known, const double changes[], double results[])
-{
-    return in_fmi2(fmi3GetDirectionalDerivative(c, unknowns, count, knowns, known, changes, known, results, count));
-}
-
-static inline fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
-{
-    return in_fmi2(fmi3GetFMUState(c, state));
-}
-
-static inline fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
-{
-    return in_fmi2(fmi3SetFMUState(c, state));
-}
-
-static inline fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
-{
-    return in_fmi2(fmi3FreeFMUState(c, state));
-}
-
-static inline fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size)
-{
-    return in_fmi2(fmi3SerializedFMUStateSize(c, state, size));
-}
-
-static inline fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
-{
-    return in_fmi2(fmi3SerializeFMUState(c, state, (fmi3Byte *)bytes, size));
-}
-
-static inline fmi2Status fmi2DeSerializeFMUstate(
-    fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state)
-{
-    return in_fmi2(fmi3DeserializeFMUState(c, (const fmi3Byte *)bytes, size, state));
-}
+PASSED(
+    fmi2GetRealOutputDerivatives,
+    (fmi2Component c, const fmi2ValueReference vr[], size_t count, const int orders[], double values[]),
+    fmi3GetOutputDerivatives(c, vr, count, orders, values, count))
+PASSED(
+    fmi2GetDirectionalDerivative,
+    (fmi2Component c, const fmi2ValueReference unknowns[], size_t count, const fmi2ValueReference knowns[],
+     size_t known, const double changes[], double results[]),
+    fmi3GetDirectionalDerivative(c, unknowns, count, knowns, known, changes, known, results, count))
+PASSED(fmi2GetFMUstate, (fmi2Component c, fmi2FMUstate *state), fmi3GetFMUState(c, state))
+PASSED(fmi2SetFMUstate, (fmi2Component c, fmi2FMUstate state), fmi3SetFMUState(c, state))
+PASSED(fmi2FreeFMUstate, (fmi2Component c, fmi2FMUstate *state), fmi3FreeFMUState(c, state))
+PASSED(
+    fmi2SerializedFMUstateSize, (fmi2Component c, fmi2FMUstate state, size_t *size),
+    fmi3SerializedFMUStateSize(c, state, size))
+PASSED(
+    fmi2SerializeFMUstate, (fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size),
+    fmi3SerializeFMUState(c, state, (fmi3Byte *)bytes, size))
+PASSED(
+    fmi2DeSerializeFMUstate, (fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state),
+    fmi3DeserializeFMUState(c, (const fmi3Byte *)bytes, size, state))
 
 static inline fmi2Status fmi2DoStep(fmi2Component c, double time, double size, fmi2Boolean keep)
 {
@@ -183,15 +155,8 @@ static inline fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolea
     return in_fmi2(fmi3CompletedIntegratorStep(c, keep != 0, enter ? &entering : NULL, end ? &ending : NULL));
 }
 
-static inline fmi2Status fmi2SetTime(fmi2Component c, double time)
-{
-    return in_fmi2(fmi3SetTime(c, time));
-}
-
-static inline fmi2Status fmi2SetContinuousStates(fmi2Component c, const double x[], size_t count)
-{
-    return in_fmi2(fmi3SetContinuousStates(c, x, count));
-}
+PASSED(fmi2SetTime, (fmi2Component c, double time), fmi3SetTime(c, time))
+PASSED(fmi2SetContinuousStates, (fmi2Component c, const double x[], size_t count), fmi3SetContinuousStates(c, x, count))
 
 #define ARRAY(function, of_fmi3)                                                              \
     static inline fmi2Status function(fmi2Component c, double values[], size_t count)         \
