@@ -246,9 +246,6 @@ def test_good_signals_stay_good_with_half_of_every_threshold(
     """When the teeth cross the gap and back, with noise and delays, no signal is near to being found bad."""
     names = ("jump", "wheel_deviation", "wheel_jump", "frozen", "t_stale", "omega_max", "t_bad", "t_apart")
     half = {name: 0.5 * getattr(P, name) for name in names}
-    parameters = {
-        "plant": {"v_0": v_0, "T_0": before},
-        "controller": half,
-    }
+    parameters = {"plant": {"v_0": v_0, "T_0": before}, "controller": half}
     y = monolithic.run(plant, step(before, after), 1.5, parameters)
     assert set(y["controller.status"]) == {WITH_WHEEL_SPEED}

@@ -48,23 +48,12 @@ def test_the_step_response_is_that_of_the_paper(T: float, tau: float) -> None:
         assert x.T_mot == pytest.approx(T * step_response(k * tau / 2.0, tau), abs=1e-9 * max(abs(T), 1.0))
 
 
-def test_the_step_response_is_exact_at_the_default_step() -> None:
-    ours = run(motor.Input(100.0), SILENT, 60, 1e-3)[:, 0]
-    exact = [100.0 * step_response(k * 1e-3, P.tau) for k in range(61)]
-    assert ours == pytest.approx(exact, abs=100.0 * 1e-9)
-
-
 @given(T_ref=st.floats(-2000.0, 2000.0))
 def test_the_torque_settles_at_the_demand_within_the_limit(T_ref: float) -> None:
     p = SILENT._replace(T_max=150.0)
     settled = run(motor.Input(T_ref), p, 1, 0.1)[-1, 0]
     assert settled == pytest.approx(max(-150.0, min(T_ref, 150.0)), abs=1e-6)
     assert motor.start(motor.Input(T_ref), p).T_mot == max(-150.0, min(T_ref, 150.0))
-
-
-def test_the_overshoot_is_that_of_a_damping_of_0_7() -> None:
-    response = run(motor.Input(100.0), SILENT, 400, 1e-4)[:, 0]
-    assert response.max() == pytest.approx(100.0 * (1.0 + exp(-np.pi)), abs=1e-2)
 
 
 def test_the_estimate_has_the_given_gain_and_offset_and_the_torque_has_not() -> None:
@@ -97,14 +86,11 @@ def test_the_same_seed_gives_the_same_noise_and_another_another() -> None:
 
 @given(omega_1=st.floats(-2000.0, 2000.0))
 def test_the_speed_is_rounded_to_its_resolution(omega_1: float) -> None:
+    assert motor.output(motor.start(motor.Input(), SILENT), motor.Input(0.0, omega_1), SILENT).omega_1_meas == omega_1
     p = SILENT._replace(q_omega=0.1)
     measured = motor.output(motor.start(motor.Input(), p), motor.Input(0.0, omega_1), p).omega_1_meas
     assert abs(measured - omega_1) <= 0.05 + 1e-9
     assert measured / 0.1 == pytest.approx(round(measured / 0.1), abs=1e-9)
-
-
-def test_without_resolution_and_noise_the_speed_is_exact() -> None:
-    assert run(motor.Input(0.0, 12.3456), SILENT, 3, 1e-3)[-1, 2] == 12.3456
 
 
 @pytest.mark.parametrize("h", slow([1e-4, 5e-4, 2e-3, 2e-3 / 3.0], but=[2e-3, 2e-3 / 3.0]))

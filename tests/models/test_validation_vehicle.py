@@ -1,8 +1,7 @@
 """The validation vehicle obeys mechanics: power, contact, symmetry, friction."""
 
-from collections.abc import Callable
 from functools import cache
-from math import atan, pi, sin, tanh
+from math import atan, sin, tanh
 from typing import NamedTuple
 
 import numpy as np
@@ -10,14 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from driveline.models import two_mass_driveline as driveline
 from driveline.models import validation_vehicle as vehicle
 from driveline.models.block.integrator import Integrator
 from driveline.models.physics.backlash import dead_zone
 
 P = vehicle.Parameters()
 REST = vehicle.State(*[0.0] * len(vehicle.State._fields))
-SYMMETRIC = P._replace(asym=0.0, t_asym=0.0)
 
 LIMITS = vehicle.State(
     omega_1=500.0, theta_1=6.3, theta_p=0.02, omega_p=1.0, gamma=0.025, omega_g=60.0, omega_d=2.0,
@@ -28,10 +25,7 @@ LIMITS = vehicle.State(
 
 states = st.tuples(*(st.just(0.0) | st.floats(-limit, limit) for limit in LIMITS)).map(vehicle.State._make)
 inputs = st.builds(
-    vehicle.Input,
-    T_mot=st.floats(-180.0, 180.0),
-    T_brake=st.floats(0.0, 4000.0),
-    slope=st.floats(-0.2, 0.2),
+    vehicle.Input, T_mot=st.floats(-180.0, 180.0), T_brake=st.floats(0.0, 4000.0), slope=st.floats(-0.2, 0.2)
 )
 
 
@@ -142,65 +136,6 @@ def test_teeth_never_pull(x: vehicle.State) -> None:
         assert vehicle.gear_torque(x, P) == 0.0
 
 
-@given(x=states, flank=st.sampled_from([-1.0, 1.0]), depth=st.floats(1e-12, 1e-6))
-def test_gear_torque_is_continuous_at_the_flanks(x: vehicle.State, flank: float, depth: float) -> None:
-    """Whatever the speed: the impact damping sets in with the penetration."""
-    touching = x._replace(gamma=flank * (P.phi_B / P.i + depth))
-    speed = abs(x.omega_1 / P.i + x.omega_p - x.omega_g)
-    assert abs(vehicle.gear_torque(touching, P)) <= 1.001 * (P.k_g + P.d_g * speed / P.y_g) * depth + 1e-9
-
-
-@settings(max_examples=30)
-@given(centre=st.floats(-2.0, 2.0), swing=st.floats(0.01, 4.0), omega=st.floats(0.1, 300.0))
-def test_the_gear_never_creates_energy(centre: float, swing: float, omega: float) -> None:
-    """Work put into the gear over a closed cycle of its twist; that of the design model is zero."""
-    angle = np.linspace(0.0, 2.0 * pi, 401)
-    twist, rate = centre + swing * np.sin(angle), swing * omega * np.cos(angle)
-
-    def work(torque: Callable[[float, float], float], half_gap: float) -> tuple[float, float]:
-        """In one cycle, in J, and its scale; the cycle is in half gaps."""
-        T = np.array([torque(*motion) for motion in zip(half_gap * twist, half_gap * rate, strict=True)])
-        return float(np.trapezoid(T * half_gap * rate, angle / omega)), float(half_gap * swing * max(abs(T)))
-
-    def impact(gamma: float, dgamma: float) -> float:
-        return vehicle.gear_torque(REST._replace(gamma=float(gamma), omega_1=P.i * float(dgamma)), P)
-
-    def elastic(phi: float, _: float) -> float:
-        return driveline.gear_torque(driveline.State(0.0, 0.0, float(phi), 0.0, 0.0, 0.0), driveline.Parameters())
-
-    lost, scale = work(impact, P.phi_B / P.i)
-    assert lost >= -1e-12 * scale
-    lost, scale = work(elastic, driveline.Parameters().phi_B)
-    assert abs(lost) <= 1e-12 * scale
-
-
-def mirrored(x: vehicle.State) -> vehicle.State:
-    """Left and right exchanged."""
-    return x._replace(
-        omega_d=-x.omega_d,
-        **{f"{name}_L": getattr(x, f"{name}_R") for name in ("x", "omega", "u", "z")},
-        **{f"{name}_R": getattr(x, f"{name}_L") for name in ("x", "omega", "u", "z")},
-    )
-
-
-@given(x=states, u=inputs)
-def test_left_and_right_are_mirror_images_without_asymmetry(x: vehicle.State, u: vehicle.Input) -> None:
-    there = mirrored(vehicle.derivative(x, u, SYMMETRIC))
-    here = vehicle.derivative(mirrored(x), u, SYMMETRIC)
-    assert list(here) == pytest.approx(list(there), rel=1e-9, abs=1e-6)
-
-
-def test_the_symmetric_vehicle_drives_straight_and_the_other_does_not() -> None:
-    difference = {}
-    for p in (SYMMETRIC, P):
-        p = p._replace(v_0=3.0, T_0=10.0)
-        u = vehicle.Input(120.0)
-        x = Integrator(vehicle.BLOCK).advance(vehicle.start(vehicle.Input(10.0), p), u, p, 0.1)
-        difference[p.asym] = abs(x.omega_L - x.omega_R)
-    assert difference[0.0] < 1e-9
-    assert difference[P.asym] > 1e-3
-
-
 @pytest.mark.parametrize(("v_0", "T_0"), [(15 / 3.6, -12.0), (15 / 3.6, 20.0), (50 / 3.6, 30.0)])
 def test_a_rolling_start_is_almost_stationary(v_0: float, T_0: float) -> None:
     p, u = P._replace(v_0=v_0, T_0=T_0), vehicle.Input(T_0)
@@ -212,28 +147,6 @@ def test_a_rolling_start_is_almost_stationary(v_0: float, T_0: float) -> None:
         speeds.append(y.omega_1 - y.omega_2)
     assert np.ptp(torques) < 0.02 * abs(T_0)
     assert max(np.abs(speeds)) < 0.2
-
-
-def ripple(omega_1: float, T_mot: float) -> float:
-    """Largest deviation in N.m of the air-gap torque over an electric turn, at a speed."""
-    x = REST._replace(omega_1=omega_1)
-    angles = np.linspace(0.0, 2.0 * pi / P.pp, 721).tolist()
-    torques = [vehicle.air_gap_torque(x._replace(theta_1=a), vehicle.Input(T_mot), P) for a in angles]
-    assert np.mean(torques[1:]) == pytest.approx(T_mot - P.c_fm * tanh(omega_1 / P.omega_fm), abs=1e-9)
-    return np.ptp(torques) / 2.0
-
-
-def test_ripple_grows_with_the_torque_and_fades_with_the_speed() -> None:
-    assert ripple(0.0, 100.0) > 2.0 * ripple(0.0, 0.0) > 0.0
-    assert ripple(P.omega_rip, 100.0) == pytest.approx(0.5 * ripple(0.0, 100.0))
-    assert ripple(10.0 * P.omega_rip, 100.0) < 0.01 * ripple(0.0, 100.0)
-
-
-def test_a_raised_nose_unloads_the_tyres_but_never_lifts_them() -> None:
-    x = REST._replace(u_L=0.01, u_R=0.01)
-    forces = [vehicle.wheels(x._replace(theta_b=nose), vehicle.Input(), P).F_L for nose in (-0.02, 0.0, 0.02, 9.0)]
-    assert forces == sorted(forces, reverse=True)
-    assert forces[-1] > 0.0
 
 
 @given(u=st.floats(-1.0, 1.0), mu=st.floats(0.05, 2.0), omega=st.floats(-300.0, 300.0), v_h=st.floats(-40.0, 40.0))

@@ -1,8 +1,6 @@
 """Fading: even, as long as said, and no further than to the end."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from driveline.models.controller.fading import faded
 
@@ -22,9 +20,3 @@ def test_from_one_end_to_the_other_takes_the_time_to_fade(on: bool) -> None:
 def test_from_between_the_ends_a_step_is_as_large() -> None:
     assert (faded(0.375, True, T_S, 0.5), faded(0.625, False, T_S, 0.5)) == (0.875, 0.125)
     assert (faded(0.625, True, T_S, 0.5), faded(0.375, False, T_S, 0.5)) == (1.0, 0.0)
-
-
-@given(level=st.floats(0.0, 1.0), t_fade=st.floats(0.002, 5.0))
-def test_the_ends_are_never_passed(level: float, t_fade: float) -> None:
-    assert level <= faded(level, True, 0.002, t_fade) <= 1.0
-    assert 0.0 <= faded(level, False, 0.002, t_fade) <= level

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 
 import pytest
 
-from driveline.models.controller import causes, motor_signals
-from driveline.models.controller.causes import NONE, SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
+from driveline.models.controller import motor_signals
+from driveline.models.controller.causes import SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
 from driveline.models.controller.motor_signals import MotorState
 from driveline.models.controller.supervision import Input, Parameters
 from driveline.models.controller.torque_loop import LoopState
@@ -86,10 +86,6 @@ def test_a_motor_torque_is_plausible_as_long_as_it_agrees_with_what_the_motor_sh
         assert motor_signals.torque(x, T_mot_est, P) == T_mot
 
 
-def test_what_is_measured_does_not_change_what_the_motor_should_have() -> None:
-    assert updated(U, last(151.0, movement=2.0))[0].loop == LoopState(50.0, 0.0)
-
-
 @each_side
 def test_a_motor_speed_may_jump_by_jump_from_the_last_one_or_from_what_is_expected(side: float) -> None:
     most = P.jump * UNIT
@@ -127,32 +123,34 @@ def test_a_fast_change_may_go_on(side: float) -> None:
         assert updated(with_speed(side * (60.0 + most)), slow)[2] == found, "one that was not fast is none"
 
 
-@each_side
-def test_a_fast_change_that_goes_on_is_taken_every_other_sample(side: float) -> None:
-    """So that it is never bad for two."""
-    used, found = after([side * 60.0 * k for k in range(1, 7)], last(0.0))
-    assert used == [side * omega_1 for omega_1 in (0.0, 120.0, 120.0, 240.0, 240.0, 360.0)]
-    assert found == [[SPEED_JUMP], []] * 3
+COURSES = {
+    "a fast change that goes on is never bad for two": (
+        *(0.0, [60.0 * k for k in range(1, 7)], [0.0, 120.0, 120.0, 240.0, 240.0, 360.0]),
+        [[SPEED_JUMP], []] * 3,
+    ),
+    "spikes of alternating sign are not taken": (
+        *(0.5, [(-1.0) ** k * 60.0 for k in range(6)], [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]),
+        [[SPEED_JUMP]] * 6,
+    ),
+    "a spike says nothing of the speed after it": (
+        *(0.0, [60.0, 1.0, 60.0, 2.0], [0.0, 1.0, 1.0, 2.0]),
+        [[SPEED_JUMP], []] * 2,
+    ),
+    "a speed that has jumped and stays is bad": (0.0, [60.0, 61.0, 62.0], [0.0] * 3, [[SPEED_JUMP]] * 3),
+    "a step that the car's own motion makes up for is still one": (
+        *(25.0, [25.0 * k - 80.0 for k in range(1, 8)], [25.0 * k for k in range(1, 8)]),
+        [[SPEED_JUMP]] * 7,
+    ),
+}
 
 
 @each_side
-def test_spikes_of_alternating_sign_are_not_taken(side: float) -> None:
-    used, found = after([side * (-1.0) ** k * 60.0 for k in range(6)], last(0.0), increment=0.5)
-    assert used == [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]
-    assert found == [[SPEED_JUMP]] * 6
-
-
-@each_side
-def test_a_spike_says_nothing_of_the_speed_after_it(side: float) -> None:
-    used, found = after([side * omega_1 for omega_1 in (60.0, 1.0, 60.0, 2.0)], last(0.0))
-    assert used == [side * omega_1 for omega_1 in (0.0, 1.0, 1.0, 2.0)]
-    assert found == [[SPEED_JUMP], []] * 2
-
-
-@each_side
-def test_a_speed_that_has_jumped_and_stays_is_bad(side: float) -> None:
-    used, found = after([side * (60.0 + k) for k in range(3)], last(0.0))
-    assert (used, found) == ([0.0] * 3, [[SPEED_JUMP]] * 3)
+@pytest.mark.parametrize(("increment", "speeds", "used", "found"), COURSES.values(), ids=COURSES)
+def test_a_fast_change_is_told_from_spikes_and_steps(
+    increment: float, speeds: list[float], used: list[float], found: list[list[int]], side: float
+) -> None:
+    seen = after([side * omega_1 for omega_1 in speeds], last(0.0), side * increment)
+    assert seen == ([side * omega_1 for omega_1 in used], found)
 
 
 def test_a_motor_speed_that_has_jumped_is_followed_once_it_is_not_trusted() -> None:
@@ -163,12 +161,7 @@ def test_a_motor_speed_that_has_jumped_is_followed_once_it_is_not_trusted() -> N
         x, used, found = updated(with_speed(300.0 + k), x, expected - x.omega_1, trusted=k < 4)
         expected = used + 1.0
         seen.append((used, bool(found)))
-    assert seen == [
-        *((1.0 + k, True) for k in range(4)),
-        (304.0, True),
-        (305.0, False),
-        (306.0, False),
-    ]
+    assert seen == [*((1.0 + k, True) for k in range(4)), (304.0, True), (305.0, False), (306.0, False)]
 
 
 def test_a_speed_out_of_range_is_not_followed_without_trust_either() -> None:
@@ -221,38 +214,9 @@ def test_a_frozen_motor_speed_stays_so_until_it_changes() -> None:
     assert updated(with_speed(151.0), x, trusted=False)[2] == [], "two samples alike are no fault"
 
 
-def test_a_speed_that_jumps_again_and_again_to_the_same_is_frozen_too() -> None:
-    """It is what was received that stays the same, not what is used."""
-    x, _, found = updated(with_speed(300.0), last(150.0))
-    assert found == [SPEED_JUMP]
-    x = motor_signals.predict(x, x.loop, 10.0, T_S, P)
-    assert updated(with_speed(300.0), x)[2] == [SPEED_JUMP, SPEED_FROZEN]
-
-
-def test_what_is_found_first_is_what_the_table_has_first() -> None:
-    order = [row.number for row in causes.FAILURES]
-    found = motor_signals.update(last(150.0), U, 150.0, True, T_S, P)[2]
-    assert list(found) == [number for number in order if number in found]
-    for u, first in (
-        (U, NONE),
-        (U._replace(omega_1_meas=300.0, T_mot_est=math.nan), SPEED_JUMP),
-        (U._replace(omega_1_meas=math.nan, T_mot_est=math.nan), SPEED_RANGE),
-    ):
-        assert causes.first_of(motor_signals.update(last(150.0), u, 150.0, True, T_S, P)[2]) == first
-
-
 def test_at_the_start_all_that_is_in_range_is_believed() -> None:
     assert motor_signals.start(U, P) == MotorState(150.0, 150.0, 0.0, 0.0, LoopState(50.0, 0.0))
     x = motor_signals.start(Input(omega_1_meas=math.nan, T_mot_est=300.0), P)
     assert x == MotorState(0.0, 0.0, 0.0, 0.0, LoopState(0.0, 0.0))
     for T_mot_est, T_mot in ((200.0, 200.0), (above(200.0), 0.0)):
         assert motor_signals.start(Input(T_mot_est=T_mot_est), P).loop.T_mot == T_mot, "twice T_max"
-
-
-@each_side
-def test_a_step_that_the_car_s_own_motion_makes_up_for_is_still_one(side: float) -> None:
-    """What is used goes on with the model; a speed beside it by more than jump is bad for as long as it is."""
-    true = [side * 25.0 * k for k in range(1, 8)]
-    used, found = after([omega_1 - side * 80.0 for omega_1 in true], last(0.0), increment=side * 25.0)
-    assert used == true
-    assert found == [[SPEED_JUMP]] * 7

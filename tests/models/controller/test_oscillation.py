@@ -46,11 +46,6 @@ def test_every_change_of_side_is_one() -> None:
     assert after([20.0, 20.0, 20.0]).count == 0.0
 
 
-def test_half_swings_are_forgotten() -> None:
-    assert after([20.0, -20.0] + [0.0] * 4).count == 0.5
-    assert after([20.0, -20.0] + [0.0] * 20).count == 0.0
-
-
 def test_no_more_are_counted_than_are_forgotten_in_some_seconds() -> None:
     assert after([20.0, -20.0] * 20).count == LONGEST
 
@@ -72,12 +67,6 @@ def test_a_change_of_the_demand_explains_half_swings(side: float) -> None:
 def test_the_largest_torque_of_a_half_swing_is_that_of_the_sample_too() -> None:
     x = SwingState(peak=20.0, count=1.0)
     assert after([80.0], [0.5 * P.demand_excuse * (80.0 + PEAK)], x).count == pytest.approx(1.0 - 0.5 - 1.0 / 8.0)
-
-
-def test_what_is_no_half_swing_is_taken_for_a_small_one() -> None:
-    assert after([0.0], [-0.5 * P.demand_excuse * PEAK], SwingState(count=1.0)).count == pytest.approx(
-        1.0 - 0.5 - 1.0 / 8.0
-    )
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

@@ -47,12 +47,6 @@ def test_the_damping_fades_out_after_the_time_at_rest() -> None:
     assert standstill.remaining_damping(above(1.0), P) < 1.0
 
 
-def test_rest_is_complete_once_no_damping_is_left() -> None:
-    assert standstill.is_complete(1.5, P)
-    assert not standstill.is_complete(math.nextafter(1.5, 0.0), P)
-    assert standstill.remaining_damping(math.nextafter(1.5, 0.0), P) > 0.0
-
-
 @given(t_rest=st.floats(0.0, 10.0), t_fade=st.floats(0.002, 5.0))
 def test_rest_is_complete_whatever_the_rounding_of_its_times(t_rest: float, t_fade: float) -> None:
     p = P._replace(t_rest=t_rest, t_fade=t_fade)

@@ -7,7 +7,6 @@ import pytest
 
 from driveline.fmus.native.trace import leaves, trace
 from driveline.models.block.declaration import variables
-from driveline.models.block.runner import runner
 from driveline.models.comparators import measured_speeds, speed_washout
 from driveline.models.comparators.speed_washout import Washout
 from driveline.models.controller import T_S, causes, damping_law, supervision, torque_estimator, torque_loop
@@ -40,11 +39,6 @@ def test_it_damps_by_its_own_law() -> None:
     assert max(abs(x.T_damp) for x in states) > 10.0
 
 
-def test_what_is_not_trusted_from_the_first_sample_on_adds_nothing() -> None:
-    states = run(OURS, 40 * [ROLLING._replace(omega_1_meas=math.nan)], t_bad=0.0)
-    assert {x.T_ref for x in states} == {ROLLING.T_driver}
-
-
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_whatever_a_law_says_its_damping_is_at_most_t_add_max(side: float) -> None:
     """A law of one's own need not limit it."""
@@ -52,15 +46,6 @@ def test_whatever_a_law_says_its_damping_is_at_most_t_add_max(side: float) -> No
     x = OTHER.start(ROLLING, p)
     y = OTHER.update(x, ROLLING._replace(omega_1_meas=ROLLING.omega_1_meas + side * 5.0), p)
     assert y.T_damp == -side * 60.0
-
-
-def test_what_the_motor_should_have_follows_the_torque_demanded_last() -> None:
-    p = OURS.Parameters()
-    x = OURS.start(ROLLING, p)
-    x = x._replace(T_ref=x.motor.loop.T_mot + 30.0)
-    expected = torque_loop.update(x.motor.loop, x.T_ref, T_S, p)
-    assert expected.T_mot > x.motor.loop.T_mot + 1.0
-    assert OURS.update(x, ROLLING, p).motor.loop == expected
 
 
 class Ahead(NamedTuple):
@@ -128,14 +113,6 @@ def test_a_speed_of_the_other_sign_needs_longer_to_heal() -> None:
             statuses.append(y.status)
         proven = statuses.index(supervision.WITHOUT_WHEEL_SPEED) * T_S
         assert proven == pytest.approx(needed, abs=2.0 * T_S)
-
-
-def test_a_runner_takes_it_as_it_takes_any_block() -> None:
-    inputs = shaken(0.2)
-    running = runner(OTHER, inputs[0], OTHER.Parameters())
-    for x, u in zip(run(OTHER, inputs)[1:], inputs, strict=True):
-        running.advance(u, T_S)
-        assert running.output(u) == OTHER.output(x, u, OTHER.Parameters())
 
 
 def test_it_is_traced_for_the_native_build() -> None:

@@ -153,13 +153,7 @@ def started(u: Input = ROLLING, **parameters: float) -> tuple[State, Any]:
 
 def test_it_starts_with_the_demand_and_what_is_measured() -> None:
     x, p = started()
-    assert (x.T_ref, x.T_damp, x.quiet, x.level, x.status) == (
-        50.0,
-        0.0,
-        0.0,
-        1.0,
-        WITH_WHEEL_SPEED,
-    )
+    assert (x.T_ref, x.T_damp, x.quiet, x.level, x.status) == (50.0, 0.0, 0.0, 1.0, WITH_WHEEL_SPEED)
     assert x.estimator == (150.0, 150.0, 50.0, 1.0)
     assert x.law == (150.0,)
     assert OTHER.output(x, ROLLING, p).T_gear_hat == 50.0
@@ -335,8 +329,7 @@ def test_damping_that_feeds_an_oscillation_lets_go_without_fallback() -> None:
 
 
 @pytest.mark.parametrize(
-    ("T_driver", "lower", "upper"),
-    [(0.1, -100.0, 60.0), (0.0, -60.0, 60.0), (-0.1, -60.0, 100.0)],
+    ("T_driver", "lower", "upper"), [(0.1, -100.0, 60.0), (0.0, -60.0, 60.0), (-0.1, -60.0, 100.0)]
 )
 def test_less_may_be_added_to_the_demand_than_taken_from_it(T_driver: float, lower: float, upper: float) -> None:
     p = P._replace(T_take_max=100.0, T_add_max=60.0)
