@@ -23,7 +23,6 @@ SAMPLES = {"--column": "v=x", "--from": "1", "--to": "2", "--dbc": "x.dbc", "--s
 COMMANDS = {
     "replay": ["replay"],
     "identify": ["identify"],
-    "explore": ["explore"],
     "simulate": ["simulate", "--manoeuvre"],
 }
 
