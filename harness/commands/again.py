@@ -31,7 +31,7 @@ class Arguments(Printing):
 
 
 def run(args: Arguments) -> int:
-    from ..simulation.same_results import different_numbers, different_origin, numeric, read_record
+    from .same_results import different_numbers, different_origin, numeric, read_record
 
     before, there = read_record(args.made), args.made.absolute()
     with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:

@@ -7,8 +7,8 @@ from typing import Any
 
 from ..base.digest import digest
 from ..base.errors import DrivelineError
+from ..simulation.provenance import differences
 from ..views.figure_options import KINDS
-from .provenance import differences
 
 MADE_BY = ("program", "commit", "versions", "run", "inputs")
 """What of a record two results of the same numbers may differ in, beside the FMUs."""
