@@ -21,6 +21,10 @@ LONGEST_COMMUNICATION_STEP = 1000.0
 """In s: a longer communication step is a mistake of the host, and would keep it waiting for ever."""
 
 
+INPUT_TOLERANCE = 1e-6
+"""Of the range of an input: so far outside its end is meant."""
+
+
 class Mode(IntFlag):
     """Where an instance is in the sequence of calls; in the last two only where the host integrates (native build)."""
 
@@ -42,7 +46,7 @@ LOG_ERROR, LOG_DISCARD = "logStatusError", "logStatusDiscard"
 
 LOG_CATEGORIES = {
     LOG_ERROR: "a call that was refused, and why; nothing has changed",
-    LOG_DISCARD: "a step that was refused, but that a shorter one can stand for; nothing has changed",
+    LOG_DISCARD: "a step or a parameter that was refused, and that the host can do without; nothing has changed",
 }
 
 WRONG_MODE = "{function} is refused {mode}; its place is {place}"

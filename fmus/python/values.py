@@ -86,12 +86,12 @@ class Values:
         """
         if not self.of_type[fmi_type].issuperset(references):
             self._refuse_type(fmi_type, references)
-        bounds = self._bounds
-        for reference, value in zip(references, new, strict=True):
+        bounds, taken = self._bounds, list(new)
+        for k, (reference, value) in enumerate(zip(references, new, strict=True)):
             low, high = bounds.get(reference, (1, 0))
             if not low <= value <= high:
-                self._judge(self.variables[reference], value)
-        for reference, value in zip(references, new, strict=True):
+                taken[k] = self._judged(self.variables[reference], value)
+        for reference, value in zip(references, taken, strict=True):
             self._all[reference] = value
         self._renew(max(references, default=0) >= self.first_parameter)
 
@@ -111,14 +111,24 @@ class Values:
         variable = self.variables[wrong]
         raise Refused(protocol.WRONG_TYPE, name=variable.name, type=variable.fmi_type, asked=fmi_type)
 
-    def _judge(self, variable: Variable, value: Any) -> None:
-        """Raises Refused, unless the variable is an input of a block that copes with any value."""
+    def _judged(self, variable: Variable, value: Any) -> Any:
+        """The value that is taken for one out of bounds: of an input of a block that copes with any value that, of
+        others the end of the range, if it is a little outside.
+
+        Raises:
+            Refused: it is not taken.
+        """
         name = variable.name
         if variable.causality == "output":
             raise Refused(protocol.OUTPUT_SET, name=name)
         if variable.reference not in self._bounds:
             raise Refused(protocol.SET_TOO_LATE, name=name, value=value)
         if variable.causality == "input" and self.block.tolerates_bad_input:
-            return
+            return value
+        low, high = variable.bounds()
+        slack = protocol.INPUT_TOLERANCE * (high - low)
+        real = variable.causality == "input" and variable.fmi_type == "Real" and math.isfinite(value)
+        if real and low - slack <= value <= high + slack:
+            return min(max(value, low), high)
         unit = f" {variable.unit}" if variable.unit else ""
         raise Refused(protocol.BAD_VALUE, name=name, value=value, unit=unit, allowed=variable.allowed())

@@ -6,6 +6,7 @@ import pytest
 
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.variables import LARGEST, interface
+from driveline.fmus.protocol import INPUT_TOLERANCE
 from tests.fmus.host import opened
 from tests.together import together
 
@@ -32,6 +33,9 @@ def outside(variable):
     low, high = variable.bounds()
     if variable.fmi_type == "Integer":
         return [value for value in (low - 1, high + 1) if -(2**31) <= value < 2**31]
+    if variable.causality == "input":  # those of strict blocks have ranges
+        slack = 1.01 * INPUT_TOLERANCE * (high - low)
+        return [low - slack, high + slack, math.nan, math.inf, -math.inf]
     ends = [math.nextafter(low, -math.inf)] if low > -LARGEST else []
     ends += [math.nextafter(high, math.inf)] if high < LARGEST else []
     return [*ends, math.nan, math.inf, -math.inf]
@@ -54,6 +58,20 @@ def test_both_ends_of_the_range_are_allowed(hosts, name, variable):
     for value in (*variable.bounds(), variable.start):
         host.set(**{variable.name: value})
         assert host.get(variable.name) == value
+
+
+@pytest.mark.parametrize("build", ["built", "native", "fmi3"])
+def test_an_input_a_little_outside_of_its_range_is_at_its_end(request, tmp_path, build):
+    """As hosts give it that perturb it for a Jacobian."""
+    with opened(request.getfixturevalue(build) / "TwoMassDriveline.fmu", tmp_path) as host:
+        low, high = next(v.bounds() for v in interface(FMUS["TwoMassDriveline"].block) if v.name == "T_brake")
+        for value in (-1e-12, -0.99e-6 * (high - low)):
+            host.set(T_brake=value)
+            assert host.get("T_brake") == low == 0.0
+        host.set(T_brake=high + 0.99e-6 * (high - low))
+        assert host.get("T_brake") == high
+        host.initialize()
+        host.step(0.0, 0.01)
 
 
 def test_one_bad_value_among_good_ones_keeps_them_all_out(hosts):

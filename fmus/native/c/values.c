@@ -209,8 +209,21 @@ static const char *write_value(char text[NUMBER_LENGTH], Type type, double value
     return text;
 }
 
-/* Whether a variable can be set to a value now; else it is refused. */
-static int is_allowed(const Instance *instance, const Variable *variable, double value)
+/* Whether an input takes a value: beyond its range the end of that is meant, by a host that rounds, or perturbs it to
+find derivatives, and where the host integrates by whatever its solver tries. */
+static int takes(const Memory *memory, const Variable *variable, double value)
+{
+    const double slack = variable->type == REAL ? INPUT_TOLERANCE * (variable->maximum - variable->minimum) : 0.0;
+    if (copes_with_bad_input || (value >= variable->minimum && value <= variable->maximum))
+        return 1;
+    if (!(fabs(value) <= DBL_MAX))
+        return 0;
+    return (memory->mode == CONTINUOUS_TIME && variable->type == REAL)
+           || (value >= variable->minimum - slack && value <= variable->maximum + slack);
+}
+
+/* Refuses a variable that cannot be set to a value now. */
+static Status judge(const Instance *instance, const Variable *variable, double value)
 {
     const int64_t mode = instance->memory.mode;
     const int started = (mode & (INSTANTIATED | INITIALIZATION)) == 0;
@@ -221,24 +234,32 @@ static int is_allowed(const Instance *instance, const Variable *variable, double
     const char *name = variable->name;
     char text[NUMBER_LENGTH];
     if (variable->causality == OUTPUT)
-        refuse(instance, OUTPUT_SET(name));
-    else if (variable->causality >= STATE)
-        refuse(instance, "%s belongs to the state and cannot be set as a variable", name);
-    else if (late)
-        refuse(instance, SET_TOO_LATE(name, write_value(text, variable->type, value)));
-    else if (good || (variable->causality == INPUT && copes_with_bad_input))
-        return 1;
-    else
-        refuse(
-            instance, BAD_VALUE(name, write_value(text, variable->type, value), variable->unit, variable->allowed));
-    return 0;
+        return refuse(instance, OUTPUT_SET(name));
+    if (variable->causality >= STATE)
+        return refuse(instance, "%s belongs to the state and cannot be set as a variable", name);
+    if (late)
+        return refuse(instance, SET_TOO_LATE(name, write_value(text, variable->type, value)));
+    if (variable->causality == INPUT ? takes(&instance->memory, variable, value) : good)
+        return OK;
+    write_value(text, variable->type, value);
+    if (variable->causality == PARAMETER)
+        return discard(instance, BAD_VALUE(name, text, variable->unit, variable->allowed));
+    return refuse(instance, BAD_VALUE(name, text, variable->unit, variable->allowed));
+}
+
+static double within(const Variable *variable, double value)
+{
+    if (variable->causality != INPUT || copes_with_bad_input)
+        return value;
+    return value < variable->minimum ? variable->minimum : value > variable->maximum ? variable->maximum : value;
 }
 
 static void put(Memory *memory, Type type, const Reference references[], size_t count, const void *values)
 {
     for (size_t k = 0; k < count; k++) {
         const double value = value_at(type, values, k);
-        *place_of(&memory->values, &variables[references[k]]) = type == BOOLEAN ? value != 0.0 : value;
+        const Variable *variable = &variables[references[k]];
+        *place_of(&memory->values, variable) = type == BOOLEAN ? value != 0.0 : within(variable, value);
     }
     memory->outputs_known = 0;
 }
@@ -249,21 +270,16 @@ RARE static Status set_others(
 {
     if (!are_of_type(instance, type, references, count, values))
         return ERROR;
-    for (size_t k = 0; k < count; k++)
-        if (!is_allowed(instance, &variables[references[k]], value_at(type, values, k)))
-            return ERROR;
+    for (size_t k = 0; k < count; k++) {
+        const Status status = judge(instance, &variables[references[k]], value_at(type, values, k));
+        if (status != OK)
+            return status;
+    }
     take_over_written(instance);
     put(&instance->memory, type, references, count, values);
     compute_terms(&instance->memory.values.p);
     know_parameters(instance);
     return OK;
-}
-
-/* Whether a variable is an input that takes a value in every mode but the last. */
-static int is_input_for(const Variable *variable, double value)
-{
-    return variable->causality == INPUT
-           && (copes_with_bad_input || (value >= variable->minimum && value <= variable->maximum));
 }
 
 Status set_values(Instance *instance, Type type, const Reference references[], size_t count, const void *values)
@@ -272,7 +288,8 @@ Status set_values(Instance *instance, Type type, const Reference references[], s
     size_t k = 0;
     if (references && values && memory->mode != TERMINATED)
         while (k < count && is_own(references[k], type)
-               && is_input_for(&variables[references[k]], value_at(type, values, k)))
+               && variables[references[k]].causality == INPUT
+               && takes(memory, &variables[references[k]], value_at(type, values, k)))
             k++;
     if (k < count)
         return set_others(instance, type, references, count, values);
