@@ -199,6 +199,7 @@ def advance(instance: Instance, row: bytearray, step_size: c_double) -> Call:
 
     def run() -> int:
         status = do_step(component, time, step_size, keep, *answers)
+        instance.slave.ended = ended.value  # type: ignore[union-attr]  # it is one of FMI 3.0
         return fmi2Discard if ended.value and status in (fmi2OK, fmi2Warning) else status
 
     return Call(instance, "fmi3DoStep", run, step_size=step_size)

@@ -7,6 +7,7 @@ its source has changed since, the loop runs in Python, with the same results.
 from collections.abc import Sequence
 from ctypes import (
     CDLL,
+    CFUNCTYPE,
     Structure,
     addressof,
     byref,
@@ -29,6 +30,7 @@ import numpy as np
 from .call_trace import NUMBERS, current
 from .calls import Call
 from .input_lines import Line
+from .instance import Instance
 from .steps import Refusal
 
 SOURCE = Path(__file__).with_name("steps.c")
@@ -99,6 +101,22 @@ class CompiledCall(Structure):
     )
 
 
+DO_STEP = CFUNCTYPE(c_int32, c_void_p, c_double, c_double, c_bool, *[c_void_p] * 4)
+"""`DoStep3` in steps.c."""
+
+
+def _watched(instance: Instance) -> Any:
+    """The step of an FMU of FMI 3.0 that may ask for the end of the run."""
+    do_step = DO_STEP(cast(instance.slave.dll["fmi3DoStep"], c_void_p).value or 0)
+
+    def step(*arguments: Any) -> int:
+        status = do_step(*arguments)
+        instance.slave.ended = c_bool.from_address(arguments[5]).value  # type: ignore[union-attr]
+        return status
+
+    return DO_STEP(step)
+
+
 class CompiledSteps:
     """The same as `harness.cosimulation.steps.interpreted`; only where there is a LIBRARY."""
 
@@ -113,8 +131,14 @@ class CompiledSteps:
         self._sources = [(c_uint32 * len(call.sources))(*call.sources) for call in calls]
         self._factors = [(c_double * len(call.factors))(*call.factors) for call in calls]
         self._lines = [(CompiledLine * len(call.lines))(*map(_line, call.lines)) for call in calls]
+        records = [*map(_record, calls, self._sources, self._factors, self._lines)]
+        self._watched = []
+        for call, record in zip(calls, records, strict=True):
+            if record.do_step and record.fmi == 3 and not call.instance.own:
+                self._watched.append(_watched(call.instance))
+                record.do_step = cast(self._watched[-1], c_void_p)
         self._loop = (
-            (CompiledCall * len(calls))(*map(_record, calls, self._sources, self._factors, self._lines)),
+            (CompiledCall * len(calls))(*records),
             c_size_t(self._turn),
             c_size_t(len(calls)),
             (c_char * len(row)).from_buffer(row),

@@ -27,6 +27,7 @@ class Experiment:
         inputs: `instance.variable` -> signal, held over each communication step.
         parameters: `instance.variable` -> value; `instance.variable@t` -> value from the time t in s on.
         scheme: when outputs reach inputs.
+        tolerance: relative, of FMUs that integrate; None: that of each FMU's default experiment.
         label: of the progress display.
     """
 
@@ -35,6 +36,7 @@ class Experiment:
     inputs: Mapping[str, Source] = field(default_factory=dict[str, Source])
     parameters: Mapping[str, float] = field(default_factory=dict[str, float])
     scheme: Scheme = Scheme.PROPAGATED
+    tolerance: float | None = None
     label: str = "simulating"
 
     def time(self) -> NDArray[np.float64]:

@@ -107,9 +107,9 @@ class _Traced:
 class FMU2Traced(_Traced, FMU2Slave):
     """An FMU of FMI 2.0 for co-simulation. (fmpy looks for FMU2 in the name of the class.)"""
 
-    def start(self, start_time: float, stop_time: float | None) -> None:
+    def start(self, start_time: float, stop_time: float | None, tolerance: float | None = None) -> None:
         """Enters initialization mode."""
-        self.setupExperiment(startTime=start_time, stopTime=stop_time)
+        self.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
         self.enterInitializationMode()
 
     def has_ended(self) -> bool:
@@ -139,9 +139,9 @@ class _OfFMI3(FMU3Base):
     serializeFMUstate = FMU3Base.serializeFMUState
     deSerializeFMUstate = FMU3Base.deserializeFMUState
 
-    def start(self, start_time: float, stop_time: float | None) -> None:
+    def start(self, start_time: float, stop_time: float | None, tolerance: float | None = None) -> None:
         """Enters initialization mode."""
-        self.enterInitializationMode(startTime=start_time, stopTime=stop_time)
+        self.enterInitializationMode(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
 
 
 class FMU3Exchanging(_Traced, _OfFMI3, FMU3Model):
@@ -161,19 +161,19 @@ class FMU3Exchanging(_Traced, _OfFMI3, FMU3Model):
 class FMU3Traced(_Traced, _OfFMI3, FMU3Slave):
     """An FMU of FMI 3.0 for co-simulation."""
 
-    _ended = False
+    ended = False
 
     def doStep(self, *arguments: Any, **named: Any) -> Any:
         """Makes a step; one after which the FMU asks for the end of the simulation is discarded, as in FMI 2.0."""
         answers = super().doStep(*arguments, **named)
-        self._ended = answers[1]
-        if self._ended:
+        self.ended = answers[1]
+        if self.ended:
             raise FMICallException(function="fmi3DoStep", status=fmi2Discard)
         return answers
 
     def has_ended(self) -> bool:
         """Whether it asked for the end of the simulation in the last step."""
-        return self._ended
+        return self.ended
 
 
 Slave = FMU2Traced | FMU2Exchanging | FMU3Traced | FMU3Exchanging
@@ -188,7 +188,10 @@ class Instance:
         interface: of its FMU.
         slave: what fmpy made of it.
         status: the worst so far.
+        own: whether it is one of the project, which never asks for the end of a run.
     """
+
+    own = False
 
     def __init__(self, name: str, interface: Interface, slave: Slave, key: int) -> None:
         self.name = name

@@ -55,7 +55,12 @@ class IsolatedLoop:
         sent = replace(experiment, inputs=samples, parameters=dict(experiment.parameters))
         with progress(len(time) - 1, experiment.label) as done:
             rows = self._isolated.fetch(size, _run, sent, watch=lambda now: done(round(now / experiment.step_size)))
-        return Results(np.frombuffer(rows, layout.recorded), layout.units)
+        results = Results(np.frombuffer(rows, layout.recorded), layout.units)
+        if ended := self._isolated.ask(_ended):
+            count, text = ended
+            LOG.warning(text)
+            return results[: int(count)]
+        return results
 
 
 @contextmanager
@@ -121,7 +126,16 @@ def _reset() -> None:
 
 
 def _run(experiment: Experiment) -> memoryview:
-    return _loop.run(experiment).view(np.uint8).data
+    """All rows, of zeros behind the end."""
+    results = _loop.run(experiment)
+    rows = results.view(np.uint8)
+    lacking = (len(experiment.time()) - len(results)) * results.itemsize
+    return (np.concatenate([rows, np.zeros(lacking, np.uint8)]) if lacking else rows).data
+
+
+def _ended() -> list[str]:
+    """How many rows there are, and what is said, where an FMU has ended the run."""
+    return [str(each) for each in _loop.ended or ()]
 
 
 def _unload() -> None:

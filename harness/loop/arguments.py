@@ -44,6 +44,10 @@ ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "build": (lambda value: value is None or isinstance(value, str), "'native', 'python' or None"),
     "mapping": (lambda value: _texts(value, str), "a dictionary such as {'plant.T_gear': 'Shaft.tau'}"),
     "limits": (lambda value: isinstance(value, Limits), "Limits"),
+    "tolerance": (
+        lambda value: value is None or (isinstance(value, Real) and 0.0 < float(value) < inf),
+        "a number above 0, or None",
+    ),
 }
 """Each argument with what tells whether it takes a value, and with what it must be."""
 

@@ -43,6 +43,7 @@ class RunChanges(TypedDict, total=False):
     build: str | None
     mapping: Mapping[str, str] | None
     limits: Limits
+    tolerance: float | None
 
 
 class Changes(RunChanges, total=False):
@@ -70,6 +71,7 @@ class Settings:
         mapping: names of the loop -> names of an FMU: what the loop calls `plant.T_gear` is `Shaft.tau` of the FMU in
             the place of the plant.
         limits: of FMUs that are given by their path.
+        tolerance: relative, of FMUs that integrate; None: that of each FMU's default experiment.
 
     Raises:
         WiringError: names a value that no run can take, whatever the FMUs are.
@@ -88,6 +90,7 @@ class Settings:
     build: str | None = None
     mapping: Mapping[str, str] = field(default_factory=dict)
     limits: Limits = USUAL_LIMITS
+    tolerance: float | None = None
 
     def __post_init__(self) -> None:
         require_arguments(**vars(self))

@@ -40,7 +40,7 @@ def simulate(
     Args:
         settings: of the run, or only the name or file of its plant; by default those of `Settings()`.
         changes: fields of the settings that are to be others: plant, controller, motor, can, control, parameters,
-            step_size, scheme, seed, folder, build, mapping, limits.
+            step_size, scheme, seed, folder, build, mapping, limits, tolerance.
 
     Returns:
         Structured array with the units of its columns: a row for each instant k * step_size, k = 0, 1, ..., with
@@ -63,6 +63,7 @@ def simulate(
         inputs=signals(manoeuvre, made.control, made.step_size),
         parameters=given,
         scheme=made.scheme,
+        tolerance=made.tolerance,
         label=manoeuvre.name,
     )
     try:

@@ -1,4 +1,4 @@
-/* What somebody else's FMU of FMI 2.0 must have and a test puts nothing into: it does nothing, or refuses. */
+/* What somebody else's FMU of FMI 2.0 must have and a test puts nothing into: it notes what it is told, or refuses. */
 #include <stddef.h>
 
 typedef void *Component;
@@ -8,9 +8,15 @@ const char *fmi2GetTypesPlatform(void) { return "default"; }
 const char *fmi2GetVersion(void) { return "2.0"; }
 int fmi2SetDebugLogging(Component c, int on, size_t n, const char *const names[]) { return 0; }
 
-int fmi2SetupExperiment(Component c, int defined, double tolerance, double start, int stops, double stop) { return 0; }
+static double tolerance_given = -1.0;
+static int initialized;
+int fmi2SetupExperiment(Component c, int defined, double tolerance, double start, int stops, double stop)
+{
+    tolerance_given = defined ? tolerance : -1.0;
+    return 0;
+}
 int fmi2EnterInitializationMode(Component c) { return 0; }
-int fmi2ExitInitializationMode(Component c) { return 0; }
+int fmi2ExitInitializationMode(Component c) { initialized = 1; return 0; }
 int fmi2Terminate(Component c) { return 0; }
 
 int fmi2GetFMUstate(Component c, void **state) { return 3; }

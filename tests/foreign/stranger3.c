@@ -34,6 +34,7 @@ void fmi3FreeInstance(Component c) { fmi2FreeInstance(c); }
 
 int fmi3EnterInitializationMode(Component c, bool defined, double tolerance, double start, bool stops, double stop)
 {
+    fmi2SetupExperiment(c, defined, tolerance, start, 0, stop);
     return fmi2EnterInitializationMode(c);
 }
 

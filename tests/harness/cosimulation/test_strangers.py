@@ -28,6 +28,7 @@ from driveline.harness.cosimulation.steps import interpreted
 from driveline.harness.cosimulation.system import System
 from driveline.harness.loop.settings import loop as looped
 from tests import ROOT
+from tests.foreign import tampered
 from tests.foreign.stranger import build_stranger, in_words_of
 from tests.slow import slow
 
@@ -113,15 +114,49 @@ def test_the_steps_in_python_name_the_same(tmp_path, fault, fmi):
 
 @every_fmi
 @pytest.mark.parametrize("make", [CompiledSteps, interpreted])
-def test_an_fmu_that_wants_to_end_the_simulation_has_discarded_the_step(tmp_path, make, fmi):
+@pytest.mark.parametrize("own", [False, True])
+def test_the_rows_up_to_the_end_that_an_fmu_asks_for_are_the_result(tmp_path, make, fmi, own, caplog):
+    """In a process of its own, or in this one as those of the project, where it is not watched for in FMI 3.0."""
+    if own and fmi == 3 and make is CompiledSteps:
+        pytest.skip("those of the project never ask")
     ends = {
         "IN_DO_STEP": f"{LATER} return 2",
         "IN_GET_BOOLEAN_STATUS": "if (kind == 3) { *value = 1; return 0; }",
     }
-    system = System({"car": build_stranger(tmp_path, fmi=fmi, **ends)})
-    message = in_words_of(fmi, r"answered fmi2DoStep at 0\.1 s with discard")
-    with pytest.raises(SimulationError, match=message), loaded(system, make_steps=make) as loop:
-        loop.run(Experiment(0.3))
+    path = build_stranger(tmp_path, fmi=fmi, IN_GET_REAL="values[0] = now", **ends)
+    with loaded(System({"car": path}, own=frozenset(["car"] * own)), make_steps=make) as loop:
+        for _ in range(2):
+            results = loop.run(Experiment(0.3))
+            np.testing.assert_allclose(results["time"], 1e-3 * np.arange(101), atol=1e-12)
+            np.testing.assert_allclose(results[results.dtype.names[1]], results["time"], atol=1e-12)
+    assert [each.getMessage() for each in caplog.records] == ["car (stranger.fmu) has ended the run at 0.1 s"] * 2
+
+
+@every_fmi
+def test_a_step_that_is_discarded_without_an_end_is_refused(tmp_path, fmi):
+    system = System({"car": build_stranger(tmp_path, fmi=fmi, IN_DO_STEP=f"{LATER} return 2")})
+    with pytest.raises(SimulationError, match=in_words_of(fmi, r"answered fmi2DoStep at 0\.1 s with discard")):
+        run(system, Experiment(0.3))
+
+
+@every_fmi
+@pytest.mark.parametrize(
+    ("declared", "given", "expected"), [("", None, -1.0), ("2e-3", None, 2e-3), ("2e-3", 1e-7, 1e-7)]
+)
+def test_a_tolerance_is_passed_on(tmp_path, fmi, declared, given, expected):
+    path = build_stranger(tmp_path, fmi=fmi, IN_GET_REAL="values[0] = tolerance_given")
+    if declared:
+        change = ("<DefaultExperiment", f'<DefaultExperiment tolerance="{declared}"')
+        path = tampered(path, tmp_path / "theirs.fmu", lambda xml: xml.replace(*change))
+    results = run(System({"car": path}), Experiment(0.01, tolerance=given))
+    assert set(results[results.dtype.names[1]]) == {expected}
+
+
+@every_fmi
+def test_the_first_row_has_the_outputs_after_initialization(tmp_path, fmi):
+    path = build_stranger(tmp_path, fmi=fmi, IN_GET_REAL="values[0] = initialized ? 353429.0 : 0.0")
+    results = run(System({"car": path}), Experiment(0.01))
+    assert set(results[results.dtype.names[1]]) == {353429.0}
 
 
 @pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
