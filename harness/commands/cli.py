@@ -46,6 +46,7 @@ PURPOSES = {
     "FMUs": {
         "build": "build the FMUs",
         "check": "check FMUs for compliance",
+        "map": "draft which variables of an FMU are those of the loop",
         "ssp": "write the loop for other tools (System Structure Package)",
         "bus": "write the database of the bus (DBC)",
     },

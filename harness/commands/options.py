@@ -269,9 +269,10 @@ class Loop(ParameterFiles, FmuFolder, ForeignLimits):
     can: str = block("can", PLACES["can"][0], "wheel speeds over the bus: %(default)s (default) or an FMU", EXPERTS)
     map: Mapping[str, str] = expert(
         (),
-        "what an FMU calls a variable of the loop, as plant.T_gear=Shaft.tau; units are converted (repeatable)",
+        "what an FMU calls variables of the loop: a file, of which `driveline map` makes a draft, or as "
+        "plant.T_gear=Shaft.tau (repeatable)",
         read=_mapping,
-        metavar="INSTANCE.NAME=THEIRS",
+        metavar="FILE.toml|NAME=THEIRS",
     )
     build: str | None = expert(None, BUILD_HELP, choices=BUILDS)
 

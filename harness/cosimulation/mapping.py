@@ -8,31 +8,63 @@ in it already.
 
 from collections.abc import Iterable, Iterator, Mapping
 from copy import copy
+from pathlib import Path
 
 from fmpy.model_description import ModelVariable
 
+from ...fmus.toml_file import toml_entries
 from ..base.collected_warnings import warn_once
 from ..base.errors import WiringError
 from ..base.known_names import nearest
+from ..base.plain_text import words
 from .interface import Interface, unit_of
 from .system import System
 from .unit_conversion import SI, factor
 
 
 def parsed(texts: Iterable[str]) -> dict[str, str]:
-    """The mapping of a system from texts such as `plant.T_gear=Shaft.tau`.
+    """The mapping of a system from texts such as `plant.T_gear=Shaft.tau`, or the paths of files that have it.
 
     Raises:
-        WiringError: a text is not of that form, or a name of the loop stands for two variables.
+        WiringError: a text is not of that form, or a name of the loop stands for two variables; see also `read`.
     """
     mapping: dict[str, str] = {}
     for text in texts:
-        name, _, theirs = (part.strip() for part in text.partition("="))
-        if not (theirs and all(name.partition("."))):
-            raise WiringError(f"{text!r} is not of the form plant.T_gear=Shaft.tau")
-        if mapping.setdefault(name, theirs) != theirs:
-            raise WiringError(f"{name} cannot be both {mapping[name]} and {theirs}")
+        name, equals, theirs = (part.strip() for part in text.partition("="))
+        if not equals and name.endswith(".toml"):
+            found = read(Path(name))
+        elif theirs and all(name.partition(".")):
+            found = {name: theirs}
+        else:
+            raise WiringError(f"{text!r} is not of the form plant.T_gear=Shaft.tau, nor a file such as theirs.toml")
+        for each, own in found.items():
+            if mapping.setdefault(each, own) != own:
+                raise WiringError(f"{each} cannot be both {mapping[each]} and {own}")
     return mapping
+
+
+def read(path: Path) -> dict[str, str]:
+    """The mapping of a file: a table for each place of the loop, with its names and those of the FMU.
+
+        [plant]
+        T_gear = "Shaft.tau"
+
+    Raises:
+        WiringError: there is no such file, or it is no such mapping.
+    """
+    try:
+        entries = toml_entries(path)
+    except (OSError, ValueError) as reason:
+        raise WiringError(f"{path}: {words(reason)}") from reason
+    found: dict[str, str] = {}
+    for place, names in entries.items():
+        if not isinstance(names, dict):
+            raise WiringError(f"{path}: {place} = {names!r:.40}; it must be a table such as [plant]")
+        for name, theirs in names.items():
+            if not (isinstance(theirs, str) and theirs):
+                raise WiringError(f"{path}: {place}.{name} = {theirs!r:.40}; it must be a name of the FMU in quotes")
+            found[f"{place}.{name}"] = theirs
+    return found
 
 
 def apply(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:

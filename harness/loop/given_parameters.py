@@ -36,8 +36,8 @@ def built_with(
     _require_of_plant(assigned, str(given.plant))
     made = built(given)
     system = loop(made)
-    values = (_of_files(system, vehicle, parameters) if vehicle or parameters else {}) | dict(assigned)
-    made = dataclasses.replace(made, parameters=values)
+    values, car = _of_files(system, vehicle, parameters) if vehicle or parameters else ({}, {})
+    made = dataclasses.replace(made, parameters=values | dict(assigned), car=car)
     require(out_of_bounds(fit(system, parameters=made.parameters), made.parameters))
     return made
 
@@ -56,9 +56,14 @@ def _require_of_plant(names: Iterable[str], plant: str) -> None:
         raise WiringError("\n".join(problems))
 
 
-def _of_files(system: System, vehicle: Path | None, parameters: Path | None) -> dict[str, float]:
+def _of_files(
+    system: System, vehicle: Path | None, parameters: Path | None
+) -> tuple[dict[str, float], dict[str, float]]:
+    """The parameters `instance.name` that the FMUs have, and by name what the plant of somebody else does not tell of
+    its car: what the file of the vehicle has, else what the default car has."""
     from ...fmus.building.one_car import of_one_car
     from ...fmus.building.parameter_files import for_instances, of_plants, read_files, require_taken, units
+    from ...fmus.catalogue import FMUS
     from ...fmus.errors import ParameterFileError
 
     interfaces = fit(system).interfaces
@@ -76,15 +81,19 @@ def _of_files(system: System, vehicle: Path | None, parameters: Path | None) -> 
     if vehicle is not None and parameters is None:
         LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
     plant = system.instances["plant"]
-    if "plant" not in system.own and (lacking := sorted(of_plants() & values.keys() - names["plant"])):
-        LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
+    car: dict[str, float] = {}
+    if "plant" not in system.own and vehicle is not None:
+        if lacking := sorted(of_plants() & values.keys() - names["plant"]):
+            LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
+        usual = FMUS[PLANTS[0]].block.Parameters._field_defaults
+        car = {name: values.get(name, usual[name]) for name in sorted(of_plants() - names["plant"])}
     require(
         problem
         for instance, interface in interfaces.items()
         for name in sorted(names[instance] & meant.keys())
         if (problem := _other_unit(interface, f"{instance}.{name}", meant[name], system.mapping))
     )
-    return for_instances(values, names)
+    return for_instances(values, names), car
 
 
 def _other_unit(interface: Interface, name: str, meant: str, mapping: Mapping[str, str]) -> str | None:

@@ -4,6 +4,7 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
+from os import PathLike
 from pathlib import Path
 from typing import TypedDict, Unpack
 
@@ -36,12 +37,13 @@ class RunChanges(TypedDict, total=False):
     can: NameOrFile | None
     control: bool
     parameters: Mapping[str, float] | None
+    car: Mapping[str, float] | None
     step_size: float
     scheme: Scheme | str
     seed: int
     folder: str | Path
     build: str | None
-    mapping: Mapping[str, str] | None
+    mapping: Mapping[str, str] | str | Path | None
     limits: Limits
     tolerance: float | None
 
@@ -63,13 +65,14 @@ class Settings:
         control: whether the damping control is enabled.
         parameters: `instance.variable` -> value, beside the start and the seeds that a run sets; `instance.variable@t`
             -> value of a tunable one from the time t in s on.
+        car: what the road load takes of a plant that has no such parameter: i, r, m, g, c_rr, c_wa -> value.
         step_size: communication step in s.
         scheme: when outputs reach inputs.
         seed: of all noise and jitter.
         folder: of the built FMUs.
         build: "native" or "python"; None: see `chosen_build`.
         mapping: names of the loop -> names of an FMU: what the loop calls `plant.T_gear` is `Shaft.tau` of the FMU in
-            the place of the plant.
+            the place of the plant; or the path of a file that has them.
         limits: of FMUs that are given by their path.
         tolerance: relative, of FMUs that integrate; None: that of each FMU's default experiment.
 
@@ -83,6 +86,7 @@ class Settings:
     can: NameOrFile = PLACES["can"][0]
     control: bool = True
     parameters: Mapping[str, float] = field(default_factory=dict)
+    car: Mapping[str, float] = field(default_factory=dict)
     step_size: float = STEP_SIZE
     scheme: Scheme = Scheme.PROPAGATED
     seed: int = 1
@@ -95,7 +99,9 @@ class Settings:
     def __post_init__(self) -> None:
         require_arguments(**vars(self))
         given = {name: PLACES[name][0] if block is None else block for name, block in self.blocks.items()}
-        given |= {"parameters": dict(self.parameters or {}), "mapping": dict(self.mapping or {})}
+        if isinstance(self.mapping, str | PathLike):
+            object.__setattr__(self, "mapping", _read_mapping(Path(self.mapping)))
+        given |= {name: dict(getattr(self, name) or {}) for name in ("parameters", "car", "mapping")}
         for name, value in {**given, "scheme": Scheme(self.scheme), "folder": Path(self.folder)}.items():
             object.__setattr__(self, name, value)
 
@@ -123,6 +129,12 @@ class Settings:
     def with_parameters(self, parameters: Mapping[str, float]) -> "Settings":
         """The same with these parameters too, `instance.variable` -> value."""
         return self.replace(parameters={**self.parameters, **parameters})
+
+
+def _read_mapping(path: Path) -> dict[str, str]:
+    from ..cosimulation.mapping import read  # who asks for help alone needs no fmpy
+
+    return read(path)
 
 
 def settings(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> Settings:

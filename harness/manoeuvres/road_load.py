@@ -33,11 +33,17 @@ class RoadLoad:
     c_wa: float
 
     @classmethod
-    def of_plant(cls, plant: Interface, parameters: Mapping[str, float] | None = None) -> Self:
+    def of_plant(
+        cls,
+        plant: Interface,
+        parameters: Mapping[str, float] | None = None,
+        car: Mapping[str, float] | None = None,
+    ) -> Self:
         """The start values of the parameters of these names.
 
         Args:
             parameters: `plant.name` -> value, which a run sets instead; others are ignored.
+            car: of those that the plant does not have, by name.
 
         Raises:
             WiringError: the plant lacks one of them.
@@ -47,13 +53,14 @@ class RoadLoad:
             for name, variable in plant.variables.items()
             if variable.type == "Real" and variable.start
         }
+        starts = {**(car or {}), **starts}
         starts |= {name.removeprefix("plant."): value for name, value in (parameters or {}).items()}
         names = [field.name for field in fields(cls)]
         missing = [name for name in names if name not in starts]
         if missing:
             raise WiringError(
                 f"{plant.path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(names)} "
-                f"of the vehicle to work out the brakes"
+                f"of the vehicle to work out the brakes; the file of --vehicle may tell them"
             )
         return cls(*(starts[name] for name in names))
 

@@ -14,6 +14,7 @@ DESCRIPTION = "modelDescription.xml"
 
 RELAY = Path(__file__).with_name("relay.py")
 CAR = Path(__file__).with_name("car.py")
+SMALLEST_CONTROLLER = Path(__file__).with_name("smallest_controller.py")
 
 UNITS = {
     "T_mot": "N.m", "T_brake": "N.m", "slope": "rad", "v_0": "m/s", "T_0": "N.m", "m": "kg", "omega_1": "rad/s",

@@ -1,0 +1,42 @@
+"""Drafts which variables of somebody else's FMU are those that the loop exchanges with a place: by names, causality and
+unit. What is not sure is marked, what is missing is named. The file is what --map of the other commands takes.
+
+examples:
+  driveline map their_car.fmu --place plant --output theirs.toml
+  driveline compare --plant their_car.fmu --map theirs.toml
+"""
+
+from pathlib import Path
+
+from ..base.errors import DrivelineError
+from .arguments import option, positional
+from .options import Replacing, file_of, record
+from .printing import JsonPrinting, write_toml
+
+PLACES = ("plant", "controller", "motor", "can")
+
+
+@record
+class Arguments(Replacing, JsonPrinting):
+    fmu: Path = positional("the FMU", Path, "FILE.fmu")
+    place: str = option("plant", "where it stands in the loop: %(choices)s (default: %(default)s)", choices=PLACES)
+    output: Path | None = file_of("of the mapping (default: it is printed)")
+
+
+def run(args: Arguments) -> int:
+    from ..cosimulation.interface import Interface
+    from ..exchange.mapping_draft import as_toml, draft
+
+    if not args.fmu.is_file():
+        raise DrivelineError(f"there is no FMU {args.fmu}")
+    proposals = draft(Interface(args.fmu), args.place)
+    text = as_toml(proposals, args.fmu.name, args.place)
+    if args.output is not None:
+        write_toml(text, args.output, args.replace)
+        args.say(f"written: {args.output}")
+    elif not args.silent:
+        print(text, end="")
+    args.document(
+        {each.port.name: {"theirs": each.theirs, "sure": each.sure, "unit": each.port.unit} for each in proposals}
+    )
+    return 0

@@ -1,0 +1,142 @@
+"""A draft of the mapping of somebody else's FMU: which of its variables the loop means by the names of a place.
+
+Names are taken apart into words (`tqMotAct`: torque, motor, actual), which are compared with those of the loop;
+causality and unit must fit.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from json import dumps
+from typing import NamedTuple
+
+from fmpy.model_description import ModelVariable
+
+from ..cosimulation.interface import Interface, unit_of
+from ..cosimulation.system import Port
+from ..cosimulation.unit_conversion import factor
+from ..loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS, PARAMETERS
+
+WORDS = {
+    "torque": "t tq trq tau torque m mom moment drehmoment",
+    "speed": "n w omega om spd speed vel velocity rpm drehzahl phidot",
+    "motor": "1 mot motor em emot rotor e engine",
+    "wheel": "2 whl wheel wheels rad rim tyre tire",
+    "brake": "brk brake brakes brems bremse",
+    "gear": "gear shaft gearbox getriebe halfshaft axle driveshaft",
+    "body": "v veh vehicle car chassis body fzg",
+    "acceleration": "a acc accel acceleration",
+    "left": "l left li fl",
+    "right": "r right re fr",
+    "start": "0 init initial start",
+    "slope": "slope grade gradient incline road",
+    "demand": "driver demand req request cmd command des desired soll pedal",
+    "reference": "ref reference set setpoint",
+    "measured": "meas measured act actual ist sensor",
+    "estimate": "est estimate estimated hat",
+    "received": "can bus rx received",
+    "valid": "valid ok flag validity",
+    "counter": "counter cnt alive",
+    "enable": "enable enabled on active activate",
+    "seed": "seed",
+}
+"""Words by how names abbreviate them."""
+
+MEANINGS = {abbreviation: word for word, texts in WORDS.items() for abbreviation in texts.split()}
+
+SPEED_OF_BODY = frozenset(("v", "vx"))
+"""Letters that mean a speed and whose at once."""
+
+LEAST = 0.5
+"""Share of common words from which a variable is proposed; all must be common for it to be sure."""
+
+
+class Proposal(NamedTuple):
+    """What a name of the loop may be.
+
+    Attributes:
+        port: of the loop.
+        theirs: the name in the FMU; None: nothing fits.
+        sure: whether all words are the same and no other variable has them.
+    """
+
+    port: Port
+    theirs: str | None
+    sure: bool
+
+
+def draft(interface: Interface, place: str) -> list[Proposal]:
+    """A proposal for each name of a place of the loop; no variable is proposed twice, but for outputs."""
+    found: dict[str, list[tuple[float, str]]] = {}
+    ports = {port.name: (port, causality) for causality, port in _ports(place)}
+    for name, (port, causality) in ports.items():
+        ours = words(port.variable)
+        fitting = [v for v in interface.of_causality(causality) if _fits(v, port.unit)]
+        found[name] = sorted(((_alike(ours, words(v.name)), str(v.name)) for v in fitting), reverse=True)
+    proposals, taken = {}, set[str]()
+    for name in sorted(ports, key=lambda name: -found[name][0][0] if found[name] else 0.0):
+        left = [(share, theirs) for share, theirs in found[name] if theirs not in taken and share >= LEAST]
+        theirs = left[0][1] if left else None
+        sure = bool(left) and left[0][0] == 1.0 and [share for share, _ in left].count(1.0) == 1
+        taken |= {theirs} if theirs else set()
+        proposals[name] = Proposal(ports[name][0], theirs, sure)
+    return [proposals[name] for name in ports]
+
+
+def as_toml(proposals: list[Proposal], file: str, place: str) -> str:
+    """The mapping as a file: what is not sure is marked, what is missing stands below."""
+    lines = [f"# {file} in the place of the {place}: names of the loop, and what they are in the FMU", f"[{place}]"]
+    for each in proposals:
+        if each.theirs is not None:
+            unit = f"in {each.port.unit}" if each.port.unit else ""
+            notes = ", ".join(note for note in (unit, "" if each.sure else "NOT SURE") if note)
+            lines.append(f"{each.port.variable} = {dumps(each.theirs)}" + (f"  # {notes}" if notes else ""))
+    missing = [each.port for each in proposals if each.theirs is None]
+    for needed in (True, False):
+        names = [port.variable for port in missing if (port.name not in OPTIONAL) == needed]
+        if names:
+            lines.append(
+                f"# {'missing, and no run goes without' if needed else 'missing, but optional'}: {', '.join(names)}"
+            )
+    return "\n".join(lines) + "\n"
+
+
+def words(name: str) -> frozenset[str]:
+    """The words of a name: `tqMotAct` has torque, motor and measured."""
+    parts = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d", name.replace("_", " ").replace(".", " "))
+    folded = [str(part).lower() for part in parts]
+    meant = {MEANINGS.get(part, part) for part in folded}
+    return frozenset(meant | ({"speed"} if SPEED_OF_BODY & set(folded) else set[str]()))
+
+
+def _alike(ours: frozenset[str], theirs: frozenset[str]) -> float:
+    return len(ours & theirs) / len(ours | theirs)
+
+
+def _fits(variable: ModelVariable, unit: str | None) -> bool:
+    theirs = unit_of(variable)
+    if unit is None or not theirs:
+        return (variable.type == "Real") == (unit is not None) or unit is None
+    return variable.type == "Real" and _converts(theirs, unit)
+
+
+@cache
+def _converts(theirs: str, ours: str) -> bool:
+    try:
+        factor(theirs, ours)
+    except ValueError:
+        return False
+    return True
+
+
+def _ports(place: str) -> Iterator[tuple[str, Port]]:
+    """Causality and name of what the loop exchanges with a place."""
+    every: Mapping[str, list[Port]] = {
+        "input": [*(Port(c.target, c.unit) for c in CONNECTIONS), *INPUTS],
+        "output": [*(Port(c.source, c.unit) for c in CONNECTIONS), *OUTPUTS],
+        "parameter": [*PARAMETERS],
+    }
+    for causality, ports in every.items():
+        for port in dict.fromkeys(ports):
+            if port.name.startswith(f"{place}."):
+                yield causality, port

@@ -1,0 +1,93 @@
+"""A draft of a mapping finds what names say, marks what they leave open and names what is missing; runs take it."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from driveline.harness.base.errors import WiringError
+from driveline.harness.commands.cli import main
+from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.cosimulation.mapping import parsed, read
+from driveline.harness.exchange.mapping_draft import as_toml, draft, words
+from driveline.harness.loop.places import PLACES
+from driveline.harness.loop.settings import settings
+from tests.foreign import tampered
+
+NAMES = {
+    "T_mot": "tqMot", "T_brake": "BrakeTorque", "slope": "grade", "v_0": "v0", "T_0": "tq_init", "omega_1": "nMot",
+    "omega_2": "nWhl", "omega_wheel_L": "nWhlLeft", "omega_wheel_R": "WheelSpeedRight", "T_gear": "Shaft.tau",
+    "v": "vVeh", "a_body": "VehAccel",
+}  # fmt: skip
+
+
+@pytest.fixture
+def theirs(native: Path, tmp_path: Path) -> Path:
+    """The design model by other names, some without a unit."""
+
+    def change(xml: str) -> str:
+        for ours, other in NAMES.items():
+            xml = xml.replace(f'name="{ours}"', f'name="{other}"')
+        return xml.replace(' unit="rad"', "", 1)
+
+    return tampered(native / "TwoMassDriveline.fmu", tmp_path / "theirs.fmu", change)
+
+
+def test_names_of_other_schools_are_found(theirs: Path) -> None:
+    assert {each.port.variable: each.theirs for each in draft(Interface(theirs), "plant")} == NAMES
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_our_own_fmus_are_sure_of_themselves(native: Path, place: str) -> None:
+    proposals = draft(Interface(native / f"{PLACES[place][0]}.fmu"), place)
+    assert [(each.port.variable, True) for each in proposals] == [(each.theirs, each.sure) for each in proposals]
+
+
+def test_what_is_not_sure_is_marked_and_what_is_missing_is_named(native: Path, tmp_path: Path) -> None:
+    def change(xml: str) -> str:
+        return xml.replace('name="T_ref"', 'name="command"').replace('name="T_driver"', 'name="torque_request_raw"')
+
+    other = tampered(native / "DampingController.fmu", tmp_path / "c.fmu", change)
+    text = as_toml(draft(Interface(other), "controller"), other.name, "controller")
+    assert 'T_driver = "torque_request_raw"  # in N.m, NOT SURE' in text
+    assert "# missing, and no run goes without: T_ref" in text
+    assert "optional" not in text
+
+
+def test_a_draft_is_what_runs_take(theirs: Path, native: Path, tmp_path: Path, capsys: Any) -> None:
+    file = tmp_path / "theirs.toml"
+    assert main(["map", str(theirs), "--output", str(file)]) == 0
+    given = ["--manoeuvre", "tipin15", "--plant", str(theirs), "--build", "native", "--fmus", str(native.parent)]
+    assert main(["simulate", *given, "--map", str(file), "--output", str(tmp_path / "out"), "--quiet"]) == 0
+    assert settings(mapping=str(file)).mapping == parsed([str(file)]) == {f"plant.{a}": b for a, b in NAMES.items()}
+    assert main(["map", str(tmp_path / "no.fmu")]) == 2
+    assert capsys.readouterr().err.endswith(f"driveline map: there is no FMU {tmp_path / 'no.fmu'}\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("T_gear = 'a'", r"T_gear = 'a'; it must be a table such as \[plant\]"),
+        ("[plant]\nT_gear = 3", r"plant\.T_gear = 3; it must be a name of the FMU in quotes"),
+        ("[plant", "not TOML"),
+        (None, "there is no such file"),
+    ],
+)
+def test_a_file_that_is_no_mapping_is_refused(tmp_path: Path, text: str | None, complaint: str) -> None:
+    file = tmp_path / "theirs.toml"
+    if text is not None:
+        file.write_text(text)
+    with pytest.raises(WiringError, match=complaint):
+        read(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("tqMotAct", {"torque", "motor", "measured"}),
+        ("v0", {"speed", "body", "start"}),
+        ("WHEEL_SPEED", {"wheel", "speed"}),
+    ],
+)
+def test_a_name_is_taken_apart_into_words(name: str, expected: set[str]) -> None:
+    assert words(name) == expected
