@@ -143,16 +143,15 @@ static double share(size_t n, const double A[][MOST_STATES], const double B[], s
     const number near = pole * (1.0 + 1e-10);
     for (size_t k = 0; k < n; k++)
         right[k] = left[k] = 1.0 + (double)k / (double)n;
-    for (int round = 0; round < 2; round++)
-        for (int side = 0; side < 2; side++) {
-            number *vector = side ? left : right;
-            double largest = 0.0;
-            solve(n, A, near, side, vector);
-            for (size_t k = 0; k < n; k++)
-                largest = fmax(largest, cabs(vector[k]));
-            for (size_t k = 0; k < n; k++)
-                vector[k] /= largest;
-        }
+    for (int side = 0; side < 2; side++) { /* so near to the pole one step of the inverse iteration is enough */
+        number *vector = side ? left : right;
+        double largest = 0.0;
+        solve(n, A, near, side, vector);
+        for (size_t k = 0; k < n; k++)
+            largest = fmax(largest, cabs(vector[k]));
+        for (size_t k = 0; k < n; k++)
+            vector[k] /= largest;
+    }
     for (size_t k = 0; k < n; k++) {
         product += left[k] * right[k];
         excited += left[k] * B[k];

@@ -40,10 +40,10 @@ const controllers = ({control, others}) => [null, ...(control ? [data.ours] : []
 // Changes the settings and asks for the runs; while others are under way only the latest wait.
 function ask(change, by) {
   wanted = {...wanted, ...change};
-  follow();
-  link(false);
   waiting = {wanted, by, since: performance.now()};
   if (!underWay || performance.now() - underWay.since > LATE) go();
+  follow();
+  link(false);
 }
 
 let underWay = null;

@@ -75,13 +75,15 @@ class Followers {
   // The value between low and high at which a frequency that grows with it is the one that is wanted.
   solved(what, frequency, wanted, low, high) {
     const missed = (x) => Math.log(frequency(Math.exp(x)) / wanted);
-    let [a, b] = [Math.log(low), Math.log(high)], before = (a + b) / 2, was = missed(before), x = before - 2 * was;
+    let [a, b] = [Math.log(low), Math.log(high)], before = this.found?.[low] ?? (a + b) / 2, was = missed(before), x = before - 2 * was;
     for (let k = 0; k < 8 && x >= a && x <= b; k++) {
       const now = missed(x);
       if (now === was) break;
       const next = x - (now * (x - before)) / (now - was);
       [before, was, x] = [x, now, next];
-      if (Math.abs(x - before) <= 1e-6) return Math.exp(x);
+      if (Math.abs(x - before) > 1e-6) continue;
+      this.found = {[low]: x}; // the next car is not far
+      return Math.exp(x);
     }
     const [least, most] = [frequency(low), frequency(high)], Hz = (f) => Number(f.toPrecision(3));
     if (!(least <= wanted && wanted <= most))

@@ -13,8 +13,7 @@ function metrics(run, {t_0, dT}, step, T_s) {
   return {
     settling_time: isStep ? settlingTime(T_gear, T_s, t_0, dT) : NaN,
     overshoot: isStep ? overshoot(t, T_gear, T_s, t_0, dT) : NaN,
-    gear_torque_rms: bandRms(windowed(T_gear), T_s, false),
-    jerk_rms: bandRms(windowed(sampled["plant.a_body"]), T_s, true),
+    ...bandRms(windowed(T_gear), windowed(sampled["plant.a_body"]), T_s),
     impact_speed: impactSpeed(run, t_0),
     withheld_time: isStep ? -(sum(piece(e, t_0, t_0 + WITHHELD)) * T_s) / dT + 0 : NaN,
   };
@@ -99,23 +98,29 @@ function line(t, y, begin) {
   return [mean - (up / down) * middle, up / down];
 }
 
-// The rms of the part of x, or of its derivative, from 5 to 50 Hz, the line from the first to the last sample subtracted.
-function bandRms(x, T_s, derivative) {
-  const n = x.length, low = Math.ceil(5 * n * T_s - 1e-9), high = Math.min(Math.floor(50 * n * T_s + 1e-9), n >> 1);
-  if (5 * n * T_s < 1) return NaN;
-  const {real, imaginary} = transform(x.map((value, k) => value - (x[0] + ((x[n - 1] - x[0]) * k) / (n - 1))));
-  let total = 0;
-  for (let k = low; k <= high; k++)
-    total += (real[k] ** 2 + imaginary[k] ** 2) * (derivative ? ((2 * Math.PI * k) / (n * T_s)) ** 2 : 1);
-  return (Math.sqrt(2) / n) * Math.sqrt(total);
+// The rms of the parts of the gear torque and of the derivative of the acceleration from 5 to 50 Hz, the lines from first
+// to last sample subtracted. Both are transformed at once, as real and imaginary part.
+function bandRms(T, a, T_s) {
+  const n = T.length, low = Math.ceil(5 * n * T_s - 1e-9), high = Math.min(Math.floor(50 * n * T_s + 1e-9), n >> 1);
+  if (5 * n * T_s < 1) return {gear_torque_rms: NaN, jerk_rms: NaN};
+  const level = (x) => x.map((value, k) => value - (x[0] + ((x[n - 1] - x[0]) * k) / (n - 1)));
+  const {real, imaginary} = transform(level(T), level(a));
+  let [torque, jerk] = [0, 0];
+  for (let k = low; k <= high; k++) {
+    const [r, m, R, M] = [real[k], imaginary[k], real[n - k], imaginary[n - k]];
+    torque += ((r + R) ** 2 + (m - M) ** 2) / 4;
+    jerk += (((m + M) ** 2 + (r - R) ** 2) / 4) * ((2 * Math.PI * k) / (n * T_s)) ** 2;
+  }
+  const rms = (total) => (Math.sqrt(2) / n) * Math.sqrt(total);
+  return {gear_torque_rms: rms(torque), jerk_rms: rms(jerk)};
 }
 
-// The discrete Fourier transform of real numbers: of any length a convolution of one that is a power of two (Bluestein).
-function transform(x) {
+// The discrete Fourier transform of x + j y: of any length a convolution of one that is a power of two (Bluestein).
+function transform(x, y) {
   const n = x.length, {size, cos, sin, br, bi} = chirp(n), ar = new Float64Array(size), ai = new Float64Array(size);
   for (let k = 0; k < n; k++) {
-    ar[k] = x[k] * cos[k];
-    ai[k] = -x[k] * sin[k];
+    ar[k] = x[k] * cos[k] + y[k] * sin[k];
+    ai[k] = y[k] * cos[k] - x[k] * sin[k];
   }
   powerOfTwo(ar, ai);
   for (let k = 0; k < size; k++) {

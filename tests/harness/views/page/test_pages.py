@@ -84,7 +84,7 @@ def test_headings_say_what_their_columns_mean_and_the_page_what_made_it(opened: 
     titles = opened.js("[...document.querySelectorAll('th[title]')].map((each) => each.title)")
     assert any(title.startswith("time until the gear torque swings by less than 5 %") for title in titles)
     text = opened.js("document.body.textContent")
-    assert "--manoeuvre" not in text  # of the tests, whose command line is pytest's
+    assert "compare --manoeuvre tipin15" in text
     assert "sha256:" in text
     assert "in 2 of 2 runs" in text
 
