@@ -41,6 +41,10 @@ THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}(\1\d{3})*", re.ASCII)
 PLAIN_NUMBERS = frozenset("0123456789+-.eE")
 
 
+TRUTHS = {"true": 1.0, "false": 0.0}
+"""Of a column that has nothing else."""
+
+
 def cleaned(cell: str) -> str:
     """Without blanks around it, and with plain signs."""
     return cell.translate(SIGNS).strip()
@@ -80,6 +84,9 @@ def numbers(cells: Sequence[str], decimal: str) -> tuple[np.ndarray, dict[int, s
             if np.isfinite(values).all():
                 return values, {}
     known = {cell: _number(cell, decimal) for cell in set(cells)}
+    flags = {cell: TRUTHS.get(cell.strip().casefold()) for cell, value in known.items() if value is None}
+    if flags and None not in flags.values() and all(value is None or value != value for value in known.values()):
+        known |= flags
     other, mark = (".", "comma") if decimal == "," else (",", "point")
     unreadable = {
         k: f"{cell} (the decimal of this file is a {mark})" if other in cell and is_number(cell) else cell

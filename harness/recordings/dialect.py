@@ -76,11 +76,22 @@ def dialect_of(text: str, path: Path) -> Dialect:
         (names_line, names), units = above[k - 1], above[k][1]
     else:
         (names_line, names), units = above[-1], ()
+    if separator == "," and _is_decimal_too(names, [cells for _, cells in below]):
+        raise RecordingError(
+            f"{path}, line {below[0][0]} has {len(below[0][1])} cells below {_filled(names)} names: the comma parts "
+            "cells and decimals; save it with semicolons or decimal points"
+        )
     columns = zip_longest(*(cells for _, cells in below), fillvalue="")
     firsts = (next((cell for cell in column if not is_missing(cell)), "") for column in columns)
     clocks = tuple(not is_number(cell) and is_clock_time(cell) for cell in firsts)
     decimal = decimal_of([cell for _, cells in below for cell in cells])
     return Dialect(separator, decimal, tuple(names), tuple(units), clocks, names_line, above[-1][0] + 1)
+
+
+def _is_decimal_too(names: Sequence[str], rows: Sequence[Sequence[str]]) -> bool:
+    """Whether the comma that separates cells stands in numbers too, without quotes."""
+    wider = [sum(map(is_number, cells)) > _filled(names) for cells in rows]
+    return 2 * sum(wider) > len(rows) and not any("." in cell or "," in cell for cells in rows for cell in cells)
 
 
 def _uncommented(cells: Sequence[str]) -> Sequence[str]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
 from ..base.plain_text import plain
+from ..cosimulation.unit_conversion import converts, factor
 from .cells import is_missing, numbers
 from .clock_times import seconds
 from .dialect import Dialect, dialect_of
@@ -244,6 +245,8 @@ def _columns(dialect: Dialect, beside: dict[str, str]) -> list[Column]:
     for k, cell in enumerate(dialect.names):
         name, unit = split(cell)
         below = dialect.units[k].strip(" []()") if k < len(dialect.units) else ""
+        if unit and below and not (converts(below, unit) and factor(below, unit) == 1.0):
+            unit = f"{unit} and {below}"  # which is refused, if the column is needed
         own = "s" if k < len(dialect.clocks) and dialect.clocks[k] else unit or below or beside.get(name)
         columns.append(Column(plain(cell, LONGEST_CELL), plain(name, LONGEST_CELL), own))
     return columns

@@ -116,8 +116,9 @@ def spread(time: np.ndarray) -> np.ndarray:
         return time
     k = np.arange(len(time))
     first = np.flatnonzero(np.append(True, steps != 0.0))
-    if (steps >= 0.0).all() and len(first) > 3:
-        steady = time[0] + np.polyfit(first[:-1], time[first[:-1]] - time[0], 1)[0] * k  # the last may be cut short
+    if (steps >= 0.0).all() and len(first) > 4:
+        inner = first[1:-1]  # the first and the last may be cut short
+        steady = time[0] + np.polyfit(inner, time[inner] - time[0], 1)[0] * k
         if np.ptp(steady - time) <= 1.05 * steps[steps > 0.0].min():
             return steady
     length = np.diff(np.append(first, len(time)))

@@ -209,6 +209,18 @@ HABITS: dict[str, Habit] = {
     ),
     "a line below the names": text(names=",".join(NAMES) + "\n=====,=====,====="),
     "an empty line below the names": text(names=",".join(NAMES) + "\n"),
+    "a comma for all": text(
+        lambda k: german(k).replace(";", ","),
+        refused=r"line 2 has 6 cells below 3 names: the comma parts cells and decimals; save it with semicolons",
+    ),
+    "two units of a column": text(
+        names=",".join(NAMES) + "\ns,m/s,Nm", refused=r"Velocity \[km/h\] is in 'km/h and m/s', which is not a known"
+    ),
+    "one unit of a column, twice": text(names=",".join(NAMES) + "\ns,kmh,N.m"),
+    "two units of a column that nobody needs": text(
+        lambda k: plain(k) + ",1", ",".join((*NAMES, "Gear [1]")) + "\ns,km/h,Nm,m"
+    ),
+    "seconds as a date has them": timed(lambda t: f"05.01.2026 10:15:{int(t + 30.7):02}"),
     "carriage returns": text(end="\r\n"),
     "old Macintosh": text(end="\r"),
     "UTF-16": text(coding="utf-16"),
