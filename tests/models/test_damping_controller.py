@@ -108,24 +108,6 @@ def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None
     assert (seen.estimate.phi, seen.estimate.omega_1) == pytest.approx((e.phi, 0.0), abs=1e-12)
 
 
-def test_the_literal_form_of_the_paper_is_an_imperfect_derivative_of_the_gear_torque() -> None:
-    """Observer without load, imperfect derivative of the estimated gear torque."""
-    literal = {"lambda_v": 0.0, "k_d": 0.0, "T_pred": 0.0, "L_T_l": 0.0, "L_can_T_l": 0.0, "Ls_T_l": 0.0}
-    literal |= {"swing": 1.0}
-    literal |= {"t_land": 0.0, "k_gap": 1.0, "k_T": 0.6, "omega_w": 60.0}
-    inputs, p = [u._replace(valid=False) for u in shaken(1.0)], P._replace(**literal)
-    states = run(BLOCK, inputs, **literal)
-    low_passed = BLOCK.output(states[0], inputs[0], p).T_gear_hat
-    for before, u, x in zip(states, inputs, states[1:], strict=False):
-        seen = estimator.take_motor_speed(before.estimator, u.omega_1_meas, T_S, p)
-        T_gear = p.C * dead_zone(seen.estimate.phi, p.phi_B)
-        expected = -0.6 * (T_gear - low_passed)
-        low_passed += 60.0 * T_S * (T_gear - low_passed)
-        assert x.T_damp == pytest.approx(max(-P.T_take_max, min(expected, P.T_add_max)), abs=1e-9)
-        assert x.estimator.estimate.T_l == 0.0
-    assert max(abs(x.T_damp) for x in states) > 5.0
-
-
 # the numbers that it is delivered with
 
 
@@ -133,10 +115,6 @@ def test_nothing_is_demanded_or_known_until_somebody_says_so() -> None:
     assert Input() == (0.0, 0.0, 0.0, 0.0, False, 0, True, 0)
     x = BLOCK.start(Input(), P)
     assert (x.T_ref, x.status) == (0.0, WITHOUT_WHEEL_SPEED)
-
-
-def test_it_computes_every_two_milliseconds() -> None:
-    assert BLOCK.sample_time == 0.002
 
 
 def test_the_torque_is_limited_to_180_newton_metres() -> None:

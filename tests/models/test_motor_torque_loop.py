@@ -78,12 +78,6 @@ def test_noise_has_the_given_deviation_and_no_mean_and_no_memory() -> None:
     assert abs(np.corrcoef(T_mot_est, omega_1_meas)[0, 1]) < 4.0 / sqrt(len(T_mot_est))
 
 
-def test_the_same_seed_gives_the_same_noise_and_another_another() -> None:
-    first, repeated, other = samples(P, 200), samples(P, 200), samples(P._replace(seed=2), 200)
-    assert (first == repeated).all()
-    assert abs(np.corrcoef(first[:, 1], other[:, 1])[0, 1]) < 0.3
-
-
 @given(omega_1=st.floats(-2000.0, 2000.0))
 def test_the_speed_is_rounded_to_its_resolution(omega_1: float) -> None:
     assert motor.output(motor.start(motor.Input(), SILENT), motor.Input(0.0, omega_1), SILENT).omega_1_meas == omega_1

@@ -49,15 +49,6 @@ def test_brakes_hold_the_car_on_a_grade(plant: ModuleType) -> None:
 
 
 @LONG_ON_PLANTS
-def test_without_brakes_the_car_rolls_back_and_turns_round(plant: ModuleType) -> None:
-    outputs = drive(plant, 4.0, lambda t: (0.0, 0.0, 0.1), v_0=2.0)
-    speeds = np.array([y.v for y in outputs])
-    assert speeds[0] > 1.5
-    assert speeds[-1] < -0.5
-    assert np.isfinite(np.array(outputs)).all()
-
-
-@LONG_ON_PLANTS
 def test_braking_ends_in_standstill_without_chatter(plant: ModuleType) -> None:
     def inputs(t: float) -> tuple[float, float, float]:
         return 0.0, float(np.interp(t, [0.2, 0.6], [0.0, 1500.0])), 0.0

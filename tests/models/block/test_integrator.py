@@ -158,22 +158,6 @@ def test_an_excursion_within_one_step_is_found(integrator: MakeIntegrator, t: fl
     assert x.x == pytest.approx(speed * 0.1 - 0.5 * 9.81 * 0.01, rel=1e-12)
 
 
-def test_the_slope_that_tells_of_an_excursion_is_taken_over_a_tenth_of_a_microsecond(
-    integrator: MakeIntegrator,
-) -> None:
-    """The indicator dips after its first instants, and again soon after: over less or more its slope points down."""
-    speed, height = 0.3, 0.004
-    dips = ((0.0, 0.75e-7 * speed), (1.5e-7 * speed, 2.5e-7 * speed))
-
-    def indicator(x: Body) -> float:
-        return x.x - height - sum(0.001 for low, high in dips if low < x.x < high)
-
-    thrown_up = replace(thrown(height), event_indicators=lambda x, u, p: (indicator(x),))
-    x = integrator(thrown_up).advance(Body(0.0, speed, 0.0), Nothing(), Nothing(), 0.1)
-    up = math.sqrt(speed * speed - 2.0 * 9.81 * height) / 9.81
-    assert x.beyond == pytest.approx(2.0 * 9.81 / 3.0 * up**3, rel=1e-6)
-
-
 @given(
     steps=st.lists(st.integers(1, 40), min_size=1, max_size=6),
     T_mot=st.floats(-100.0, 100.0),

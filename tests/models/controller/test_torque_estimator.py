@@ -145,14 +145,6 @@ def test_what_the_speeds_are_counted_from_is_of_no_account(base: float) -> None:
     assert estimate(later) == pytest.approx(expected.estimate, rel=1e-12)
 
 
-def test_after_a_sample_the_speeds_are_counted_from_the_measured_one() -> None:
-    """So they are small numbers, however fast the car is."""
-    x = estimator.take_motor_speed(estimating(E_0), 1000.0 + E_0.omega_1, T_S, P)
-    assert x.base == 1000.0 + E_0.omega_1
-    close = estimator.take_motor_speed(estimating(E_0), E_0.omega_1 + 0.5, T_S, P).estimate
-    assert max(abs(close.omega_1), abs(close.omega_2)) < 3.0
-
-
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_a_message_corrects_as_far_as_the_wheel_speed_is_in_use(share: float) -> None:
     """It is 4 rad/s above what it should tell, or below."""
@@ -172,11 +164,6 @@ def test_a_message_is_compared_with_the_estimate_behind_a_lag_of_its_age() -> No
     assert told == [142.0, 143.5, 141.625]
 
 
-def test_a_message_of_the_least_age_is_compared_with_the_estimate_of_the_sample_before() -> None:
-    x = estimating(E_0, late=140.0)
-    assert estimator.predict(x, 60.0, True, 0.25, GAINS._replace(T_age=0.25)).late == 148.0
-
-
 @pytest.mark.parametrize("late", [0, 1, -1])
 def test_a_message_as_old_as_assumed_corrects_a_steady_acceleration_by_nothing(late: int) -> None:
     """The lag is as late as a message of that age, 11.5 samples; a sample more or less shows."""
@@ -185,24 +172,6 @@ def test_a_message_as_old_as_assumed_corrects_a_steady_acceleration_by_nothing(l
         x = estimator.predict(x._replace(estimate=E_0._replace(omega_2=0.05 * k)), 0.0, True, T_S, p)
     message = 0.05 * (2000 - 11.5 - late)
     assert message - x.late == pytest.approx(-0.05 * late, abs=1e-9)
-
-
-@pytest.mark.parametrize("late", [0, 1])
-def test_a_message_as_old_as_assumed_corrects_a_perfect_model_by_nothing(late: int) -> None:
-    """It tells the true speed of the wheels behind the lag; one that is a sample older shows."""
-    off = ROLLING._replace(enable=False)
-    p, x = P._replace(T_age=0.023), BLOCK.start(off, P)
-    true, told = [estimate(x.estimator)], [150.0]
-    for k in range(400):
-        u = off._replace(omega_1_meas=true[k].omega_1)
-        if k > 40:
-            u = u._replace(omega_2_can=told[k - late], counter=k // 10)
-        x = BLOCK.update(x, u, p)
-        true.append(estimator.integrated(true[k], 50.0, T_S, p))
-        told.append(told[k] + T_S / p.T_age * (true[k].omega_2 - told[k]))
-    e = estimate(x.estimator)
-    error = max(abs(e.omega_2 - true[-1].omega_2), abs(e.phi - true[-1].phi))
-    assert error > 1e-6 if late else error < 1e-9
 
 
 def test_no_lag_or_mean_is_faster_than_a_sample() -> None:
@@ -252,11 +221,6 @@ def test_the_correction_itself_may_lead_beyond_the_bound(side: float) -> None:
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_a_twist_that_is_no_number_begins_anew(value: float) -> None:
     assert estimator.take_motor_speed(estimating(E_0._replace(phi=value)), 150.0, T_S, P).estimate == ANEW
-
-
-def test_whatever_load_there_is_it_is_no_reason_to_begin_anew() -> None:
-    e = E_0._replace(phi=0.5, T_l=100.0 * P.T_max)
-    assert estimator.take_motor_speed(estimating(e), e.omega_1, T_S, P).estimate.T_l == e.T_l
 
 
 def test_from_whatever_estimate_a_finite_one_comes() -> None:

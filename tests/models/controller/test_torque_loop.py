@@ -26,10 +26,6 @@ def test_it_answers_a_step_as_the_motor_does(tau: float) -> None:
         )
 
 
-def test_a_torque_that_is_demanded_stays() -> None:
-    assert torque_loop.update(torque_loop.LoopState(50.0), 50.0, T_S, P) == (50.0, 0.0)
-
-
 def test_a_sample_goes_as_the_trapezoidal_rule_has_it() -> None:
     """Means of the torque and of its rate over the sample are those in the middle, in both equations."""
     x, g = LoopState(20.0, 30.0), T_S / P.tau
@@ -47,12 +43,6 @@ def test_an_estimate_may_differ_by_a_twentieth_of_T_max_and_a_third_of_the_torqu
     x = LoopState(T_mot, 0.0)
     assert torque_loop.agrees(x, T_mot + side * (most - 0.01), P)
     assert not torque_loop.agrees(x, T_mot + side * (most + 0.01), P)
-
-
-@pytest.mark.parametrize("gain", [0.7, 1.3])
-@pytest.mark.parametrize("T_mot", [20.0, -180.0])
-def test_an_estimate_may_be_30_percent_off(gain: float, T_mot: float) -> None:
-    assert torque_loop.agrees(LoopState(T_mot, 0.0), gain * T_mot, P)
 
 
 def test_what_is_no_number_agrees_with_nothing() -> None:

@@ -73,12 +73,6 @@ def test_a_good_sample_is_enough_to_begin_anew(row: Cause) -> None:
 
 
 @each_cause
-def test_good_signals_heal_in_t_proof_and_of_another_direction_in_t_turn(row: Cause) -> None:
-    assert [trust.is_trusted(after(n, lost(row.number))) for n in (3, 4)] == [False, True]
-    assert [trust.is_trusted(after(n, lost(row.number), turned=True)) for n in (7, 8)] == [False, True]
-
-
-@each_cause
 def test_a_time_to_heal_is_met_to_half_a_sample(row: Cause) -> None:
     for turned, samples in ((False, 3.5), (True, 7.5)):
         for clock, healed in ((samples * T_S, True), (math.nextafter(samples * T_S, 0.0), False)):
@@ -99,13 +93,6 @@ def test_a_bad_sample_is_enough_to_begin_the_healing_anew(row: Cause) -> None:
     assert after(1, x, found=[row.number]) == lost(SPEED_JUMP)
 
 
-def test_a_motor_that_sets_off_against_its_torque_is_not_trusted_until_it_turns_with_it() -> None:
-    x = after(1, after(20), found=[WRONG_LAUNCH])
-    assert x == lost(WRONG_LAUNCH)
-    x = after(20, x, found=[WRONG_LAUNCH], turned=True)
-    assert [trust.is_trusted(after(n, x)) for n in (3, 4)] == [False, True]
-
-
 def test_the_clock_starts_anew_when_trust_is_lost() -> None:
     """The time for which signals were bad is none for which they are good."""
     x = after(4, found=[SPEED_JUMP])
@@ -122,30 +109,11 @@ def test_the_clock_starts_anew_when_trust_is_lost() -> None:
     assert after(1, x) == lost(WHEEL_CONTRADICTS, T_S)
 
 
-@pytest.mark.parametrize("turned", [True, False])
-def test_the_clock_starts_anew_when_trust_is_back(turned: bool) -> None:
-    """The time for which signals were good is none for which they are bad."""
-    x = after(8 if turned else 4, lost(SPEED_JUMP), turned=turned)
-    assert x == TRUSTED
-    assert [trust.is_trusted(after(n, x, found=[SPEED_JUMP])) for n in (4, 5)] == [True, False]
-
-
 def test_time_apart_runs_only_while_there_is_trust() -> None:
     x = after(20, lost(SPEED_JUMP), found=[WHEEL_CONTRADICTS])
     assert x == lost(SPEED_JUMP)
     x = after(4, x)
     assert [trust.is_trusted(after(n, x, found=[WHEEL_CONTRADICTS])) for n in (8, 9)] == [True, False]
-
-
-def test_each_time_has_its_clock() -> None:
-    """A contradiction and a bad sample do not add up."""
-    apart = after(8, found=[WHEEL_CONTRADICTS])
-    assert apart == TRUSTED._replace(apart=2.0)
-    assert after(1, apart, found=[SPEED_JUMP]) == TRUSTED._replace(clock=0.25)
-    bad = after(4, found=[SPEED_JUMP])
-    assert after(1, bad, found=[WHEEL_CONTRADICTS]) == TRUSTED._replace(apart=0.25)
-    both = after(1, after(7, found=[WHEEL_CONTRADICTS]), found=[SPEED_JUMP, WHEEL_CONTRADICTS])
-    assert both == TRUSTED._replace(clock=0.25, apart=2.0), "both at a time run both"
 
 
 def test_causes_with_the_same_time_have_the_same_clock() -> None:
@@ -220,13 +188,6 @@ def test_a_bus_that_tells_the_direction_is_believed(side: float) -> None:
         for how in ((False, False), (False, True), (True, False)):
             x = x._replace(direction=-side)
             assert trust.direction(x, told, *how, -side * 99.0, True, T_S, P) == side
-
-
-@each_side
-def test_the_direction_of_the_sample_is_kept(side: float) -> None:
-    for x in (TRUSTED, lost(SPEED_JUMP)):
-        nothing = dict.fromkeys([row.number for row in FAILURES], False)
-        assert trust.update(x._replace(direction=side), nothing, False, T_S, P).direction == side
 
 
 @each_side

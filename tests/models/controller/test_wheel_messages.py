@@ -99,11 +99,6 @@ def test_a_message_tells_what_the_wheels_did_some_time_ago(side: float) -> None:
         assert contradicts is (100.0 * forgotten > APART + P.g_radius * 150.0)
 
 
-def test_what_the_motor_speed_was_before_a_fault_says_nothing() -> None:
-    x, _, contradicts = updated(new(), omega_1=300.0, strict=True)
-    assert (x.least, x.largest, contradicts) == (300.0, 300.0, True)
-
-
 @each_side
 def test_a_message_that_leaps_while_the_motor_speed_does_not_is_not_taken(side: float) -> None:
     """Until one is near the motor speed again."""
@@ -128,11 +123,6 @@ def test_a_message_that_has_leapt_is_not_taken_and_contradicts_as_those_before_i
             y, taken, contradicts = updated(new(150.0 + side * leap), x, omega_1, strict=True, apart=apart)
             assert (taken, contradicts) == (not leapt, apart or not leapt)
             assert (y.omega_2, y.silence) == ((150.0, T_S) if leapt else (150.0 + side * leap, 0.0))
-
-
-def test_messages_that_drift_away_are_taken() -> None:
-    """Nothing tells which of the two is wrong."""
-    assert updated(new(168.0), omega_1=110.0, strict=True)[1:] == (True, True)
 
 
 def test_the_first_message_has_not_leapt() -> None:
