@@ -92,11 +92,6 @@ def test_an_unknown_unit_is_named():
         base_exponents("lbf.ft")
 
 
-def test_a_brake_does_not_act_on_the_body_at_once():
-    """In the design model through the tyre alone; with a recorded load it does not act at all."""
-    assert output_dependencies(FMUS["TwoMassDriveline"].block)["a_body"] == {"slope", "T_load_rec"}
-
-
 def test_what_a_boolean_parameter_chooses_and_bars_is_no_dependency_but_the_parameter_is_one():
     class Chosen(NamedTuple):
         on: Annotated[bool, Boolean("choose")] = False
@@ -139,19 +134,6 @@ def test_every_output_that_is_said_to_follow_an_input_does(name):
             if after[y] != before[y]:
                 unseen.remove((y, changed))
     assert unseen == set()
-
-
-def test_the_measured_speed_is_all_that_the_motor_feeds_through():
-    assert output_dependencies(FMUS["MotorTorqueLoop"].block) == {
-        "T_mot": frozenset(),
-        "T_mot_est": frozenset(),
-        "omega_1_meas": {"omega_1"},
-    }
-
-
-def test_no_output_of_a_sampled_block_depends_on_its_inputs_at_once():
-    for name in ("WheelSpeedCan", "DampingController"):
-        assert not any(output_dependencies(FMUS[name].block).values())
 
 
 def other_value(variable):

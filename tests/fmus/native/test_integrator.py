@@ -177,21 +177,6 @@ def test_it_looks_for_a_crossing_where_python_does(
     assert looked_at(integrator) == looked_at(Integrator)
 
 
-@together("side", [1.0, -1.0])
-@together("behind", [1.0, 1.0 + 1e-6, 1e3])
-@together("until", [0.05, 1.0])
-def test_what_lies_at_the_resolution_has_crossed_no_zero_in_c_either(
-    integrator: MakeIntegrator, side: float, behind: float, until: float
-) -> None:
-    """An indicator that goes to its resolution at 0.03 s, and further at `until`."""
-
-    def ledge(x: Body) -> float:
-        return side * (1.0 if x.x < 0.03 else -1e-12 if x.x < until else -behind * 1e-12)
-
-    looked_at = looks(lambda x: Body(1.0, 0.0, 0.0), Body(0.0, 0.0, 0.0), ledge)
-    assert looked_at(integrator) == looked_at(Integrator)
-
-
 def end_of(make: MakeIntegrator, moved: ContinuousBlock) -> Body | str:
     """The state after a while, or that which changes too fast."""
     try:
@@ -218,22 +203,6 @@ def traced(derivative: Rates, zero: Zero) -> tuple[ContinuousBlock, list[Body], 
         return (zeros[-1],)
 
     return replace(block(watch), event_indicators=indicators), requested, zeros
-
-
-@together("which", ["x", "v", "beyond"])
-def test_chatter_is_given_up_where_python_gives_up(integrator: MakeIntegrator, which: str) -> None:
-    """The state that changes fastest is named."""
-
-    def pushed(x: Body, _u: float) -> Body:
-        return Body(0.0, 0.0, 0.0)._replace(**{which: -1.0 if getattr(x, which) > 0.0 else 0.5})
-
-    requested: list[set[Body]] = []
-    for make in (integrator, Integrator):
-        chattering, looks_at = traced(pushed, lambda x, _u: getattr(x, which))[:2]
-        with pytest.raises(NotIntegrable, match=which):
-            make(chattering).advance(Body(0.0, 0.0, 0.0)._replace(**{which: 0.03}), 0.0, Nothing(), 0.1)
-        requested.append(set(looks_at))
-    assert requested[0] == requested[1]
 
 
 @together("power", [6, 12, 60, 150, 290])

@@ -6,7 +6,6 @@ import shutil
 import subprocess
 import sys
 import zipfile
-from xml.etree import ElementTree
 
 import fmpy
 import pytest
@@ -78,26 +77,6 @@ def test_its_sources_compile_with_fmpy(native, tmp_path, name):
         host.initialize()
         host.step(0.0, 0.01)
         assert all(abs(value) < 1e6 for value in host.outputs().values())
-
-
-def test_the_description_differs_from_that_of_the_python_build_only_where_the_builds_do(native, built):
-    """Beside the kind of FMU in the states, and in their units, which the Python build does not show."""
-
-    def shown(folder, name):
-        with zipfile.ZipFile(folder / f"{name}.fmu") as archive:
-            root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-        (variables,) = root.findall("ModelVariables")
-        count = len([v for v in variables if v.get("causality") != "local"])
-        parts = [*root.findall("TypeDefinitions"), *root.findall("DefaultExperiment"), *variables[:count]]
-        known = [ElementTree.tostring(part).strip() for part in parts]
-        for unknown in root.iterfind("ModelStructure/*/Unknown"):
-            if int(unknown.get("index", 0)) <= count:
-                on = [k for k in unknown.get("dependencies", "").split() if int(k) <= count]
-                known.append(repr((unknown.get("index"), on)).encode())
-        return known
-
-    for name in FMUS:
-        assert shown(native, name) == shown(built, name)
 
 
 @together(

@@ -8,7 +8,7 @@ import pytest
 
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import FLAGS, host_compiler
-from driveline.fmus.native.shared_header import definition, shared_header
+from driveline.fmus.native.shared_header import definition
 from tests.fmus.host import opened
 from tests.together import together
 
@@ -85,10 +85,3 @@ def test_nothing_has_a_name_outside_its_fmu_but_the_functions_of_the_standard_wi
 )
 def test_a_value_becomes_a_macro_and_its_fields_the_parameters(value, text):
     assert definition("X", value) == text
-
-
-def test_what_a_number_means_is_said_in_c_too():
-    text = shared_header()
-    assert "/* Time in s over which the slope of an event indicator is taken. */\n#define PROBE 1e-07\n" in text
-    assert "/* In s: how far the host's time may be from the FMU's. */\n#define TIME_TOLERANCE 1e-06\n" in text
-    assert "#define TICK_TOLERANCE 0.001\n" in text
