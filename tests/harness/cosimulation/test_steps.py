@@ -1,11 +1,13 @@
 """The steps in compiled code and in Python: the same to the last bit, and the same words about a refusal."""
 
+from ctypes import c_double
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from driveline.harness.base.errors import SimulationError
+from driveline.harness.cosimulation.calls import _change
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
@@ -82,3 +84,13 @@ def test_a_native_fmu_says_why_it_refuses(request, make, build, function):
     message = rf"^motor \(MotorTorqueLoop\.fmu\) answered {function} at 0\.25 s .*T_ref"
     with loaded(system, make_steps=make) as running, pytest.raises(SimulationError, match=message):
         running.run(Experiment(0.5, inputs={"motor.T_ref": T_ref}))
+
+
+@pytest.mark.parametrize("factors", [(), (1.0, 1e3)])
+def test_inputs_are_handed_on_if_one_of_them_has_changed_and_only_then(factors):
+    row, buffer = (c_double * 3)(4.0, 0.0, 7.0), (c_double * 2)()
+    changed, (first, second) = _change(memoryview(row).cast("B").cast("d"), (0, 16), buffer, factors), factors or (1, 1)
+    for k, value, has_changed in ((0, 4.0, True), (0, 4.0, False), (1, 9.0, False), (2, 8.0, True)):
+        row[k] = value  # that between them is not among them
+        assert changed() is has_changed
+    assert tuple(buffer) == (4.0 / first, 8.0 / second)
