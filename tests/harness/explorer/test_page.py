@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from shutil import copyfile
 from typing import Any
 
 import numpy as np
@@ -141,6 +142,22 @@ def test_a_recording_and_a_car_are_on_the_page(native: Path, tmp_path: Path) -> 
     where = ["--fmus", str(native.parent), "--build", "native", "--output", str(path), "--no-browser", "--quiet"]
     assert main(["explore", str(drive), *given, *where]) == 0
     assert path.stat().st_size < 1_000_000
+
+
+@pytest.mark.slow
+def test_a_block_of_ones_own_is_compiled_into_the_page(native: Path, native_builder: Any, tmp_path: Path) -> None:
+    """Its native FMU has the C source."""
+    from driveline.fmus.catalogue import EVERY
+
+    loops()
+    copyfile(native_builder(EVERY[WASHOUT], native.parent), tmp_path / "Mine.fmu")
+    args = explore.Arguments(fmus=native.parent, build="native")
+    made = content(all_settings(args, [DESIGN], [str(tmp_path / "Mine.fmu")]))
+    (run,) = asked(tmp_path, made, {"controller": "Mine"})["answers"]
+    changes: Any = {"controller": WASHOUT, "folder": native.parent, "build": "native"}
+    results = simulate(MANOEUVRES["tipin15"], DESIGN, **changes)
+    assert column(tmp_path, 0, "plant.T_gear") == pytest.approx(at_samples(results)["plant.T_gear"], abs=1e-7)
+    assert run["worth"]["overshoot"] > 0.0
 
 
 def test_what_has_no_c_source_is_refused_with_what_takes_it(
