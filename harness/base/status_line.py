@@ -107,11 +107,6 @@ def is_terminal(stream: TextIO | None) -> bool:
     return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
-def no_longer_waiting() -> None:
-    """From here on it is the user for whom the command waits."""
-    _over.set()
-
-
 def _attend(line: Line) -> None:
     while not _over.wait(INTERVAL):
         line.beat()

@@ -235,7 +235,9 @@ class Figure {
   set(panel, axis, ends) {
     const shape = JSON.stringify([panel.label, panel.scale, panel.ticks, axis, ends, panel.x && 1, this.stack.left]);
     Object.assign(this, {panel, axis, ends});
-    const heading = [panel.heading, panel.note].filter(Boolean).join(", ");
+    const fits = 6.4 * panel.label.length < HEIGHT * (panel.height ?? 1); // else it stands above
+    const heading = [panel.heading, fits ? "" : panel.label, panel.note].filter(Boolean).join(", ");
+    this.label = fits ? panel.label : "";
     if (this.caption.textContent !== heading) this.caption.textContent = heading;
     this.list();
     if (shape !== this.shape) {
@@ -267,7 +269,7 @@ class Figure {
       },
       axes: [
         {...style, ...(this.ends ? {label: axis.label, labelSize: 16, size: BELOW - 16} : {size: 6, values: (_, at) => at.map(() => "")})},
-        {...style, ...worded, label: panel.label, labelSize: 16, size: this.stack.left},
+        {...style, ...worded, label: this.label, labelSize: 16, size: this.stack.left},
       ],
       padding: [8, 12, null, null],
       cursor: {

@@ -9,7 +9,7 @@ from threading import Event
 import pytest
 
 from driveline.harness.base import status_line
-from driveline.harness.base.status_line import Line, no_longer_waiting, waiting
+from driveline.harness.base.status_line import Line, waiting
 
 
 class Terminal(io.StringIO):
@@ -76,14 +76,6 @@ def test_an_unfinished_line_is_left_alone() -> None:
     line.give_way("\n")
     line.beat()
     assert "at work" in shown.getvalue()
-
-
-def test_there_is_no_line_while_the_user_is_waited_for() -> None:
-    with terminal() as shown, waiting("driveline explore"):
-        assert shown.wrote.wait(60.0)
-        no_longer_waiting()
-        print("an address")
-        assert shown.seen() == "an address\n"
 
 
 @pytest.mark.parametrize("enabled", [False, True])
