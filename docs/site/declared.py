@@ -8,9 +8,19 @@ from driveline.fmus.description.documentation import tables, timing
 from driveline.fmus.file_limits import LIMITS
 from driveline.fmus.fmu import Fmu
 from driveline.harness.exchange.compliance import check
-from driveline.harness.recordings import plausibility, relations, signal_checks
+from driveline.harness.recordings import (
+    alignment,
+    channel_rules,
+    delays,
+    force_balance,
+    missing_values,
+    plausibility,
+    relations,
+    signal_checks,
+)
 from driveline.harness.recordings.missing_values import FILLED
 from driveline.harness.recordings.quantities import BY_UNIT, QUANTITIES, aliases
+from driveline.harness.recordings.thresholds import Threshold
 from driveline.harness.views.markdown import markdown_table
 from driveline.models.controller.causes import FAILURES, FEEDING, Cause
 from driveline.models.damping_controller import BLOCK
@@ -104,6 +114,20 @@ def recording_checks() -> str:
     ).strip()
 
 
+def recording_thresholds() -> str:
+    """The numbers that decide in them, each with the measurement that it comes from."""
+    rooms = (missing_values, channel_rules, force_balance, plausibility, relations, delays, signal_checks, alignment)
+    rows: dict[int, tuple[str, ...]] = {}
+    for room in rooms:
+        for name, each in vars(room).items():
+            if isinstance(each, Threshold) and id(each) not in rows:
+                where = room.__name__.rpartition(".")[2]
+                rows[id(each)] = (f"`{where}.{name}`", f"{each:g}", each.unit, each.of, each.source)
+    return markdown_table(
+        ("threshold", "value", "unit", "of what", "where it comes from"), list(rows.values()), labels=5
+    )
+
+
 def _each(value: str) -> str:
     """A threshold of several quantities, those that have the same together."""
     by_value: dict[str, list[str]] = {}
@@ -122,6 +146,7 @@ TABLES: dict[str, Callable[[], str]] = {
         recording_columns,
         recording_plausibility,
         recording_checks,
+        recording_thresholds,
     )
 }
 """By the names that pages call them."""

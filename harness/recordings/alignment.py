@@ -19,7 +19,7 @@ SLOWER = Threshold(
     1.5,
     "1",
     "interval over that of the base from which on a wheel speed is held between messages",
-    "loggers jitter by less",
+    "a logger of one rate has 1, a bus of 20 ms beside it 10",
 )
 
 

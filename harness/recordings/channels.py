@@ -85,7 +85,7 @@ class Channels:
         columns: Mapping[str, str] | None = None,
         names: Sequence[Path] = (),
         databases: Sequence[Path] = (),
-        cut: Cut = WHOLE,
+        cut: tuple[float | Clock | None, float | Clock | None] = WHOLE,
     ) -> None:
         """
         Args:
@@ -99,7 +99,7 @@ class Channels:
         """
         self.path = path
         self.names = aliases(*names)
-        self._cut = cut
+        self._cut = Cut(*cut)
         self._source = opened(path, databases)
         self._chooser = Chooser(self._source, self.names, columns or {})
 

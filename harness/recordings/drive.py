@@ -9,9 +9,10 @@ import numpy as np
 from .alignment import aligned, is_slower
 from .bounded_reading import bounded
 from .channels import Channel, Channels
+from .clock_times import Clock
 from .file_units import FileUnit
 from .source import RecordingError
-from .time_base import WHOLE, Cut
+from .time_base import WHOLE
 
 WHEELS = "omega_wheel"
 """Whose speed over ground is that of the vehicle where it was not recorded."""
@@ -56,7 +57,7 @@ def read_drive(
     columns: Mapping[str, str] | None = None,
     names: Sequence[Path] = (),
     databases: Sequence[Path] = (),
-    cut: Cut = WHOLE,
+    cut: tuple[float | Clock | None, float | Clock | None] = WHOLE,
 ) -> Drive:
     """Reads a recorded drive. Columns are found by name and converted by unit; others are ignored.
 
@@ -64,7 +65,7 @@ def read_drive(
         columns: by quantity the heading of its column, where that is not to be found by name.
         names: files of aliases beside ours.
         databases: of the bus, if the file is a log of its frames.
-        cut: from and to when it is read, in s, or a `Clock`.
+        cut: from and to when it is read: seconds, a `Clock`, or None for its begin or end.
 
     Raises:
         RecordingError: names the file, the column and what is wrong. The elevation may be missing, and in the place of

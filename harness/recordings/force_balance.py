@@ -31,7 +31,10 @@ class Car(Protocol):
 
 SMOOTHING = Threshold(0.5, "s", "standard deviation of the Gaussian", "brakes and slopes are slower than 1 Hz")
 FORCE = Threshold(
-    300.0, "N", "force up to which the balance cannot tell a force from an error", "half of the grade of 5 % of a road"
+    300.0,
+    "N",
+    "force up to which the balance cannot tell a force from an error",
+    "a grade of 2 % takes 284 N of 1450 kg",
 )
 ROLLING = Threshold(1.0, "m/s", "speed above which a car rolls", "below it friction holds it, whatever the motor does")
 EVERY = Threshold(0.02, "s", "interval that is enough for the balance", "a twenty-fifth of the Gaussian")
@@ -41,7 +44,12 @@ SIGNED = Threshold(
     "correlation of the forces from which on their sign means something",
     "0.91 and more in the recorded trips, 0.90 in 200 simulated drives",
 )
-TOGETHER = Threshold(0.7, "1", "the same while the motor pushes, from which on their ratio means something", "")
+TOGETHER = Threshold(
+    0.7,
+    "1",
+    "the same while the motor pushes, from which on their ratio means something",
+    "0.93 in the recorded trips; 0.97 but for 2 of 254 simulated drives",
+)
 SMALLEST, LARGEST = (
     Threshold(value, "1", f"{which} ratio of what a motion takes to what the motor gives", RATIOS)
     for value, which in ((0.5, "smallest"), (2.5, "largest"))

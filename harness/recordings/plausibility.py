@@ -24,7 +24,7 @@ SLOWEST = Threshold(
 )
 BEYOND = Threshold(0.01, "1", "share of the samples that may lie beyond T_max", "0.1 % in trip a11, T_max 180 N.m")
 UNABLE = Threshold(
-    1.5, "1", "torque over T_max beyond which not even one may lie", "1.39 in trip a11, whose motor has 250 N.m"
+    1.5, "1", "torque over T_max beyond which not even one may lie", "1.26 in trip a11, whose motor has 250 N.m"
 )
 SHORTEST = Threshold(
     2e-4, "s", "interval of the fastest recordings; in ms, none faster is tried", "loggers reach 5 kHz"
