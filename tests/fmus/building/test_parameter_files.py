@@ -85,6 +85,7 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
         ("m = 299.9", "m = 299.9: TwoMassDriveline takes 300 to 40000 kg"),
         ("m = 40001", "m = 40001: TwoMassDriveline takes 300 to 40000 kg"),
         ("T_max = 0.5", "T_max = 0.5: MotorTorqueLoop takes 1 to 2000 N.m"),
+        ("i = 0.99", "i = 0.99: TwoMassDriveline takes 1 to 30"),
         ("v_0 = 3.0", "v_0 does not belong here: the manoeuvre sets it"),
         ("seed = 3", "seed does not belong here: --seed sets it for a run"),
         ("k_d = 2.0", "k_d does not belong here: it is one of the controller, for the file of --parameters"),
@@ -166,15 +167,6 @@ def test_an_entry_goes_to_every_instance_that_has_the_name() -> None:
     instances = {"plant": {"i", "m", "r"}, "can": {"i", "r"}, "controller": {"k_d"}}
     placed = for_instances({"i": 10.5, "m": 2200.0, "k_d": 4.0, "k_s": 3e4}, instances)
     assert placed == {"plant.i": 10.5, "plant.m": 2200.0, "can.i": 10.5, "controller.k_d": 4.0}
-
-
-def test_what_the_blocks_share_cannot_disagree() -> None:
-    """Ratio, radius, torque limit and the model of the drive train stand in more than one block."""
-    shared = {"i": 3, "r": 3, "T_max": 2, "J_1": 3, "J_2": 2, "C": 2, "phi_B": 3, "m": 2}
-    start = {name: declared.start for owned in PARAMETERS.values() for name, declared in owned.items()}
-    placed = for_instances({name: start[name] for name in shared}, PARAMETERS)
-    for name, count in shared.items():
-        assert sum(key.endswith(f".{name}") for key in placed) == count
 
 
 def test_either_file_may_be_absent(written: Callable[[str], Path]) -> None:

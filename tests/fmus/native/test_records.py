@@ -1,7 +1,6 @@
 """Records, and terms that depend on parameters alone, in C."""
 
 import math
-import re
 from collections.abc import Callable
 from typing import Annotated, Any, NamedTuple
 
@@ -179,13 +178,3 @@ def test_no_stage_of_a_plant_divides_by_parameters_or_has_the_slope_in_it(name: 
     assert "p->terms" in stages
     assert "/ p->" not in stages
     assert "slope" not in stages
-
-
-def test_at_a_stage_only_that_is_computed_again_which_an_input_moves(native_builder: None) -> None:
-    text = block_sources(FMUS["ValidationVehicle"])["block.c"]
-    blocks = text.partition("void held_terms(")[2].partition("\n}")[0].split("if (")[1:]
-    for block in blocks:
-        moves = re.match(r"!du \|\| du->(\w+) != 0\)", block)
-        assert moves
-        assert set(re.findall(r"\bu->(\w+)", block)) == {moves[1]}
-    assert len(blocks) == 3

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from driveline.models.controller import T_S as SAMPLE
-from driveline.models.controller import launch, trust
+from driveline.models.controller import launch
 from driveline.models.controller.causes import NONE, WRONG_LAUNCH
 from driveline.models.controller.launch import LaunchState
 from driveline.models.controller.supervision import Input, Parameters, State
@@ -145,12 +145,3 @@ def test_trust_is_back_once_the_motor_turns_the_other_way_or_rests_and_not_befor
         speeds = [side * (other if k % 2 else omega_1) for k in range(proof)]
         causes = [x.trust.cause for x in driven(states[-1], side, speeds)]
         assert causes == [WRONG_LAUNCH] * (proof - 1) + [NONE if heals else WRONG_LAUNCH]
-
-
-@each_side
-def test_the_direction_is_that_of_the_demand_even_if_it_ends_in_that_sample(side: float) -> None:
-    before, found = set_off(side)[-2:]
-    u = Input(T_driver=side * 1.0, omega_1_meas=found.motor.omega_1, T_mot_est=before.motor.loop.T_mot)
-    x = OURS.update(before, u, CAR)
-    assert abs(u.T_driver) < CAR.T_still
-    assert (x.trust.cause, trust.sign_of(x.trust.direction)) == (WRONG_LAUNCH, side)

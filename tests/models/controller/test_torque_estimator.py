@@ -154,16 +154,6 @@ def test_a_message_corrects_as_far_as_the_wheel_speed_is_in_use(share: float) ->
         assert estimator.take_wheel_speed(x, 140.0 + error, T_S, GAINS) == x._replace(estimate=e)
 
 
-def test_a_message_is_compared_with_the_estimate_behind_a_lag_of_its_age() -> None:
-    """In which the estimate of a sample takes part from the next one on."""
-    p, x, told = GAINS._replace(T_age=1.0), estimating(E_0, late=140.0), []
-    for omega_2 in (148.0, 148.0, 136.0):
-        x = estimator.predict(x._replace(estimate=E_0._replace(omega_2=omega_2)), 0.0, True, 0.25, p)
-        told.append(x.late)
-        assert estimator.take_wheel_speed(x, x.late, 0.25, p) == x
-    assert told == [142.0, 143.5, 141.625]
-
-
 @pytest.mark.parametrize("late", [0, 1, -1])
 def test_a_message_as_old_as_assumed_corrects_a_steady_acceleration_by_nothing(late: int) -> None:
     """The lag is as late as a message of that age, 11.5 samples; a sample more or less shows."""
