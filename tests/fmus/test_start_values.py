@@ -17,7 +17,6 @@ from driveline.harness.loop.places import NATIVE
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from driveline.models.block.declaration import variables
-from driveline.models.block.types import with_start_values
 from tests import ROOT
 from tests.fmus.host import opened
 from tests.fmus.native.test_page import EXAMPLE
@@ -105,15 +104,6 @@ def test_the_same_files_give_the_same_bytes_and_no_files_the_default(of_python: 
     assert FMUS[name].started_with({}) == FMUS[name]
     default = build(FMUS[name].started_with({"k_d": 4.0}), of_python / "default")
     assert default.read_bytes() == (built / f"{name}.fmu").read_bytes(), "which has no such parameter"
-
-
-def test_a_block_with_other_start_values_declares_the_same() -> None:
-    block = FMUS["DampingController"].block
-    changed = with_start_values(block, {"k_d": 4.0})
-    before, after = variables(block.Parameters), variables(changed.Parameters)
-    assert [v._replace(start=None) for v in after] == [v._replace(start=None) for v in before]
-    assert {v.name: v.start for v in after} == {v.name: v.start for v in before} | {"k_d": 4.0}
-    assert changed.Parameters() == block.Parameters()._replace(k_d=4.0)
 
 
 @together("option", ["vehicle", "parameters"])

@@ -109,16 +109,3 @@ def test_a_state_of_another_fmu_is_refused_and_both_are_named(built, tmp_path):
         assert to_can
         assert to_motor.groups() == to_can.groups()[::-1]
         assert to_motor[1] != to_motor[2]
-
-
-def test_a_demand_that_is_on_its_way_through_the_dead_time_is_in_the_state(motor):
-    motor.initialize(t_dead=0.005, dT_max=5000.0, omega_base=20.0)
-    drive(motor, 0, 30)
-    motor.set(T_ref=150.0)
-    motor.step(30 * 0.0013, 0.0013)
-    state = motor.fmu.getFMUstate()
-    motor.set(T_ref=0.0)
-    expected = drive(motor, 31, 45)
-    motor.fmu.setFMUstate(state)
-    assert drive(motor, 31, 45) == expected
-    motor.fmu.freeFMUstate(state)

@@ -53,6 +53,8 @@ every_controller = pytest.mark.parametrize("block", EVERY, ids=lambda block: blo
 ROLLING = Input(T_driver=50.0, omega_1_meas=150.0, T_mot_est=50.0, omega_2_can=150.0, valid=True, counter=0)
 ABSURD = [math.nan, math.inf, -math.inf, 1e308, -1e308, 1e9, -3e3]
 
+each_side = pytest.mark.parametrize("side", [1.0, -1.0])
+
 any_signal = st.one_of(st.floats(allow_nan=True, allow_infinity=True), st.floats(-300.0, 300.0))
 any_input = st.builds(
     Input,
@@ -66,22 +68,19 @@ any_input = st.builds(
 )
 
 
-def run(block: SampledBlock, inputs: Iterable[Input], **parameters: float) -> list[State]:
-    """States: that of the start, and after each input."""
+def run(block: SampledBlock, inputs: Iterable[Input], with_motor: bool = False, **parameters: float) -> list[State]:
+    """States: that of the start, and after each input; `with_motor` has the torque that is demanded of it."""
     inputs, p = list(inputs), block.Parameters(**parameters)
     states = [block.start(inputs[0], p)]
     for u in inputs:
+        u = u._replace(T_mot_est=states[-1].motor.loop.T_mot) if with_motor else u
         states.append(block.update(states[-1], u, p))
     return states
 
 
-def run_with_motor(block: SampledBlock, inputs: Iterable[Input], **parameters: float) -> list[State]:
-    """As `run`, but the motor has the torque that is demanded of it."""
-    inputs, p = list(inputs), block.Parameters(**parameters)
-    states = [block.start(inputs[0], p)]
-    for u in inputs:
-        states.append(block.update(states[-1], u._replace(T_mot_est=states[-1].motor.loop.T_mot), p))
-    return states
+def above(limit: float) -> float:
+    """The next number."""
+    return math.nextafter(limit, math.inf)
 
 
 def drive_inputs(seconds: float, **changes: Any) -> list[Input]:

@@ -13,6 +13,7 @@ from driveline.models.controller import T_S as SAMPLE
 from driveline.models.controller import damping_law as law
 from driveline.models.controller.damping_law import LawState
 from driveline.models.controller.interfaces import Motion
+from tests.models.controller.controllers import above, each_side
 
 P = damping_controller.BLOCK.Parameters(
     phi_B=0.25, k_d=2.0, k_gap=0.5, k_T=0.125, omega_w=2.0, T_pred=0.5, t_land=1.0, t_return=0.5
@@ -39,10 +40,6 @@ def demanded(motions: list[Motion], T_driver: float, p: Any = P) -> list[float]:
     return torques
 
 
-def just_above(limit: float) -> float:
-    return math.nextafter(limit, math.inf)
-
-
 @given(
     omega=st.floats(-1000.0, 1000.0), phi=st.floats(-2.0, 2.0), T_gear=st.floats(-300.0, 300.0), T=st.floats(-50, 50)
 )
@@ -59,7 +56,7 @@ def test_speed_difference_and_gear_torque_are_opposed() -> None:
     assert added(STILL._replace(T_gear=56.0), x) == -0.125 * 16.0
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@each_side
 def test_the_speed_difference_counts_by_k_gap_between_the_flanks(side: float) -> None:
     """At half the backlash the teeth touch. Without a demand there is no landing."""
     turning = AFLOAT._replace(omega_1=103.0, phi=side * 0.25)
@@ -79,7 +76,7 @@ def test_what_will_be_when_the_torque_acts_is_opposed(T_pred: float) -> None:
     assert x.washout == 5.0 + 0.5 * opposed
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@each_side
 def test_the_twist_too_is_taken_ahead(side: float) -> None:
     """Where the teeth will touch T_pred ahead the speed difference counts in full, and there is no way left to land."""
     now, x = AFLOAT._replace(omega_1=100.0 + side * 3.0), law.start(AFLOAT, 2.0, P)
@@ -112,7 +109,7 @@ def test_no_washout_or_return_is_faster_than_a_sample() -> None:
     assert 400.0 * SAMPLE < 1.0
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@each_side
 def test_the_damping_is_limited_to_t_add_max_both_ways(side: float) -> None:
     """And the washout goes on by what would be opposed without a limit."""
     for turning, damping in ((29.5, 59.0), (30.0, 60.0), (30.5, 60.0), (1e6, 60.0)):
@@ -123,7 +120,7 @@ def test_the_damping_is_limited_to_t_add_max_both_ways(side: float) -> None:
 
 
 @pytest.mark.parametrize("omega", [-8.0, 0.0, 3.0, 12.0])
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@each_side
 def test_between_the_flanks_the_motor_is_led_to_that_of_the_demand(side: float, omega: float) -> None:
     """With k_gap k_d a rad/s; the largest demand that counts is T_gap."""
     motion = AFLOAT._replace(omega_1=100.0 + side * omega)
@@ -145,7 +142,7 @@ def test_the_motor_is_not_driven_towards_the_flank_with_more_than_the_demand() -
     assert demanded([AFLOAT._replace(omega_1=93.0)], 4.0) == [7.0]
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@each_side
 def test_a_demand_that_rises_will_rise_further(side: float) -> None:
     """By demand_lead times what it has risen of late, which is forgotten with omega_slow."""
     p, x = P._replace(demand_lead=2.0), law.start(AFLOAT, -side * 2.0, P)
@@ -162,7 +159,7 @@ def test_a_demand_that_falls_to_zero_is_not_led_through_the_gap_before_it_has_tu
     p, x = P._replace(demand_lead=1.0), law.start(AFLOAT, 40.0, P)
     for T_driver in (4.0, 2.0, 0.0, -2.0):
         assert added(AFLOAT, x, T_driver, p) == 0.0
-    assert added(AFLOAT, x, -just_above(2.0), p) == pytest.approx(-8.0)
+    assert added(AFLOAT, x, -above(2.0), p) == pytest.approx(-8.0)
     assert law.update(x, AFLOAT, AFLOAT, 20.0, T_S, p)[0].afloat == 0.0
     assert law.update(x, AFLOAT, AFLOAT, 21.0, T_S, p)[0].afloat == T_S
 
@@ -175,13 +172,13 @@ def test_without_a_demand_there_is_no_landing(T_driver: float) -> None:
         x, torque = law.update(x, AFLOAT, AFLOAT, T_driver, T_S, P)
         assert torque == (0.0, 0.0)
     assert x.afloat == 0.0
-    assert law.update(x, AFLOAT, AFLOAT, just_above(2.0), T_S, P)[0].afloat == T_S
+    assert law.update(x, AFLOAT, AFLOAT, above(2.0), T_S, P)[0].afloat == T_S
     assert added(AFLOAT, x, -16.0) == -10.0 + 16.0
 
 
 def test_the_teeth_have_t_land_to_land() -> None:
     """To the nearest number of samples of 0.25 s. Then what was withheld comes back: half of it in a sample."""
-    for t_land in (just_above(just_above(0.875)), 1.0, 1.125):
+    for t_land in (above(above(0.875)), 1.0, 1.125):
         assert demanded([AFLOAT] * 7, 16.0, P._replace(t_land=t_land)) == pytest.approx([10.0] * 5 + [13.0, 14.5])
     assert demanded([AFLOAT] * 6, 16.0, P._replace(t_land=0.875)) == pytest.approx([10.0] * 4 + [13.0, 14.5])
     assert demanded([AFLOAT] * 2, 16.0, P._replace(t_land=0.0)) == [16.0] * 2

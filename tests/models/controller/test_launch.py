@@ -10,15 +10,13 @@ from driveline.models.controller.causes import NONE, WRONG_LAUNCH
 from driveline.models.controller.launch import LaunchState
 from driveline.models.controller.supervision import Input, Parameters, State
 from driveline.models.physics.vehicle import added_speed
-from tests.models.controller.controllers import OURS
+from tests.models.controller.controllers import OURS, each_side
 
 P = Parameters(T_max=1.0, J_1=0.25, T_still=0.25, launch_speed=4.5)
 T_S = 0.25
 FREE = 4.5
 """Speed in rad/s of the free motor at which is looked; T_max adds 1 rad/s in such a sample."""
 AT_REST = LaunchState(free=0.0, off=0.0)
-
-each_side = pytest.mark.parametrize("side", [1.0, -1.0])
 
 
 def after(

@@ -10,6 +10,7 @@ from driveline.models.controller.causes import SPEED_FROZEN, SPEED_JUMP, SPEED_R
 from driveline.models.controller.motor_signals import MotorState
 from driveline.models.controller.supervision import Input, Parameters
 from driveline.models.controller.torque_loop import LoopState
+from tests.models.controller.controllers import above, each_side
 
 P = Parameters(T_max=100.0, J_1=0.25, omega_max=500.0, t_move=2.0, jump=0.4, q_omega=1.0, frozen=0.02, omega_still=3.0)
 T_S = 0.25
@@ -20,12 +21,6 @@ LOOP = LoopState(7.0, 3.0)
 
 U = Input(T_driver=50.0, omega_1_meas=150.0, T_mot_est=50.0)
 NO_NUMBERS = [math.nan, math.inf, -math.inf]
-
-each_side = pytest.mark.parametrize("side", [1.0, -1.0])
-
-
-def above(limit: float) -> float:
-    return math.nextafter(limit, math.inf)
 
 
 def with_speed(omega_1: float) -> Input:

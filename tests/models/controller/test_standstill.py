@@ -1,20 +1,15 @@
 """Rest: neither demand nor motion, and for how long."""
 
-import math
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from driveline.models.controller import standstill
 from driveline.models.controller.supervision import Parameters
+from tests.models.controller.controllers import above
 
 P = Parameters(T_still=2.0, omega_still=3.0, t_rest=1.0, t_fade=0.5)
 T_S = 0.25
-
-
-def above(limit: float) -> float:
-    return math.nextafter(limit, math.inf)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

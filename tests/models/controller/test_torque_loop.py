@@ -8,10 +8,9 @@ import pytest
 from driveline.models.controller import T_S, torque_loop
 from driveline.models.controller.supervision import Parameters
 from driveline.models.controller.torque_loop import LoopState
+from tests.models.controller.controllers import each_side
 
 P = Parameters(T_max=180.0, tau=0.003)
-
-each_side = pytest.mark.parametrize("side", [1.0, -1.0])
 
 
 @pytest.mark.parametrize("tau", [0.0015, 0.003, 0.01, 0.1])

@@ -20,6 +20,7 @@ from driveline.models.controller.causes import (
 )
 from driveline.models.controller.supervision import Input, Parameters
 from driveline.models.controller.trust import TrustState
+from tests.models.controller.controllers import each_side
 
 P = Parameters(t_bad=1.0, t_apart=2.0, t_proof=1.0, t_turn=2.0, omega_still=3.0)
 T_S = 0.25
@@ -27,7 +28,6 @@ U = Input()
 TRUSTED = trust.start()._replace(direction=1.0)
 
 each_cause = pytest.mark.parametrize("row", FAILURES, ids=lambda row: row.word)
-each_side = pytest.mark.parametrize("side", [1.0, -1.0])
 
 
 def lost(cause: int, clock: float = 0.0) -> TrustState:

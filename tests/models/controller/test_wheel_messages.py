@@ -8,6 +8,7 @@ import pytest
 from driveline.models.controller import wheel_messages as wheels
 from driveline.models.controller.supervision import Input, Parameters
 from driveline.models.controller.wheel_messages import WheelState
+from tests.models.controller.controllers import above, each_side
 
 P = Parameters(
     T_max=100.0, J_1=0.25, omega_max=500.0, omega_still=3.0, t_stale=1.0, t_apart=1.0, t_late=1.0,
@@ -18,12 +19,6 @@ LEAP, APART = 20.0, 16.0
 """In rad/s: these shares of what T_max adds to the free motor in such a sample."""
 U = Input(omega_2_can=150.0, valid=True, counter=7)
 NO_NUMBERS = [math.nan, math.inf, -math.inf]
-
-each_side = pytest.mark.parametrize("side", [1.0, -1.0])
-
-
-def above(limit: float) -> float:
-    return math.nextafter(limit, math.inf)
 
 
 def updated(
