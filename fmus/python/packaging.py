@@ -114,7 +114,9 @@ def _packed_by_pythonfmu(fmu: Fmu, package: str, files: dict[str, bytes]) -> dic
         try:
             FmuBuilder.build_FMU(script, dest=archive, project_files=[folder / package])
         except shutil.Error as error:  # a list of what could not be copied
-            raise (full_disk() if os.strerror(ENOSPC) in str(error) else error) from error
+            if os.strerror(ENOSPC) not in str(error):
+                raise
+            raise full_disk() from error
         with zipfile.ZipFile(archive) as packed:
             names = (name for name in packed.namelist() if "__pycache__" not in name)
             return {name: packed.read(name) for name in names}

@@ -49,7 +49,8 @@ def kept(path: Path, make: Callable[[Path], object]) -> Path:
         with complete(path) as unfinished:
             make(unfinished)
         seal(path)
-    os.utime(path.parent)
+    with suppress(OSError):  # of a cache that this user only reads
+        os.utime(path.parent)
     forget(path.parent.parent.iterdir())
     return path
 

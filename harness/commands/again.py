@@ -22,6 +22,7 @@ from ..base.command_line import PROGRAM
 from ..base.errors import DrivelineError
 from ..base.plain_text import plain
 from .arguments import filled, positional, record
+from .options import Replacing
 from .printing import Printing
 
 
@@ -67,6 +68,8 @@ def _run(before: Mapping[str, Any], folder: Path, name: str) -> int:
     with chdir(cwd), redirect_stdout(io.StringIO()):
         parsed = parser().parse_args(words)
         given = filled(parsed.found.record, parsed)
+        if not isinstance(given, Replacing):  # others build, serve, or run what is no FMU
+            raise DrivelineError(f"the command of {name}.json makes no result of runs: {plain(command_line)}")
         return parsed.found.run(replace(given, **_elsewhere(given, folder, name)))
 
 

@@ -96,6 +96,10 @@ def test_a_number_that_is_another_one_is_named(made: Path, tmp_path: Path, capsy
         (lambda record: record.pop("versions"), "is no record of a result, or one of an earlier version"),
         (lambda record: record.update(files=["x.csv"]), "is no record of a result, or one of an earlier version"),
         (lambda record: record.update(command_line="python mine.py"), "made by another program, .*: python mine.py$"),
+        (
+            lambda record: record.update(command_line="driveline build x.py"),
+            "makes no result of runs: driveline build x.py",
+        ),
         (lambda record: record.update(folder="/nowhere"), "made in the folder /nowhere, which is not there"),
     ],
 )
