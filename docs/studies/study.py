@@ -118,6 +118,7 @@ STUDIES = (
     "target",
     "bound",
     "speed",
+    "reliability",
 )
 """Modules of this folder that have a STUDY; those that decide come first."""
 
