@@ -46,7 +46,7 @@ def as_fmi2(description: ModelDescription) -> list[str]:
     return [f"-DTIME={time}u", "-Wno-strict-prototypes", f"-I{AS_FMI2}", f"-I{FMI_HEADERS}"]
 
 
-def program(fmu: Path, folder: Path) -> list[str]:
+def program(fmu: Path, folder: Path, host: Path = HOST) -> list[str]:
     """The command of a host that makes calls to a native FMU, compiled with the sources of the FMU.
 
     Raises:
@@ -54,10 +54,10 @@ def program(fmu: Path, folder: Path) -> list[str]:
     """
     fmpy.extract(str(fmu), str(folder))
     sources = folder / "sources"
-    made = folder.resolve() / HOST.stem
+    made = folder.resolve() / host.stem
     description = fmpy.read_model_description(str(fmu))
     options = [*SANITIZED, *numbers(description), *as_fmi2(description)]
-    command = [host_compiler(), *options, "-I.", str(HOST.resolve()), "all.c", "-o", str(made), "-lm"]
+    command = [host_compiler(), *options, "-I.", str(host.resolve()), "all.c", "-o", str(made), "-lm"]
     compiled = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=False)
     if "cannot find" in compiled.stderr:
         raise NotPossible("the compiler has no sanitizers")
