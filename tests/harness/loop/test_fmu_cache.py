@@ -113,6 +113,7 @@ def test_a_folder_counts_as_used_before_it_is_looked_through(given: Path, monkey
 def test_a_file_of_the_cache_stands_for_one_that_is_built(given: Path, cache: Path) -> None:
     assert as_built(cache / "key" / "native" / "WheelSpeedCan.fmu") == BUILD / "native" / "WheelSpeedCan.fmu"
     assert as_built(given / "WheelSpeedCan.fmu") == given / "WheelSpeedCan.fmu"
+    assert BUILD == ROOT / "build", "in a checkout, wherever it is run"
 
 
 def test_a_cache_that_cannot_be_written_is_named_in_a_line_with_what_moves_it(
