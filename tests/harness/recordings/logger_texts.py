@@ -107,6 +107,33 @@ MISSING_WORDS = (
     "-nan(ind)", "ungültig", "SNA", "err",
 )  # fmt: skip
 
+
+def labview(columns: str = "One", mark: str = ".") -> Habit:
+    """A text of LabVIEW, with a head for the file and one for the channels."""
+    head = (
+        f"LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t{mark}\nMulti_Headings\tNo\nX_Columns\t{columns}\n"
+        f"Time\t10:15:30,123\n***End_of_Header***\t\n\t\nChannels\t2\t\t\t\nSamples\t{COUNT}\t{COUNT}\t\t\n"
+        "Y_Unit_Label\tkm/h\tNm\t\t\nX_Dimension\tTime\tTime\t\t\nDelta_X\t0.1\t0.1\t\t\n***End_of_Header***\t\t\t\t"
+    )
+    rows = ["\t".join([*cells(k), ""]).replace(".", mark) for k in range(COUNT)]
+    refused = (
+        "" if columns == "One" else "has no time that is that of all its channels; save it with `X Value Columns: One`"
+    )
+    names = "X_Value\tVelocity\tMotor Torque\tComment"
+    return Habit("\n".join([head, names, *rows]).encode() + b"\n", refused=refused)
+
+
+def vbox() -> Habit:
+    """A text of VBOX, whose times are those of a clock without colons, here around a full minute."""
+    head = (
+        "File created on 05/01/2026 at 10:15:30\n\n[header]\nsatellites\ntime\nvelocity kmh\nMotor_Torque\n\n[channel units]\n"
+        "Nm\n\n[comments]\nVBOX 3i\n\n[column names]\nsats time velocity Motor_Torque \n\n[data]"
+    )
+    stamps = (f"1015{57.0 + t:05.2f}" if t < 3.0 else f"1016{t - 3.0:05.2f}" for t in TIME)
+    rows = [f"008 {stamp} {V[k]:07.3f} {T[k]:+.6E}" for k, stamp in enumerate(stamps)]
+    return Habit("\n".join([head, *rows]).replace("\n", "\r\n").encode() + b"\r\n")
+
+
 TWO_LINES = "Time,Velocity 1,Motor Torque\ns,km/h,Nm"
 
 HABITS: dict[str, Habit] = {
@@ -221,6 +248,11 @@ HABITS: dict[str, Habit] = {
         lambda k: plain(k) + ",1", ",".join((*NAMES, "Gear [1]")) + "\ns,km/h,Nm,m"
     ),
     "seconds as a date has them": timed(lambda t: f"05.01.2026 10:15:{int(t + 30.7):02}"),
+    "LabVIEW": labview(),
+    "LabVIEW, German": labview(mark=","),
+    "LabVIEW, a time for each channel": labview("Multi"),
+    "LabVIEW, no times": labview("No"),
+    "VBOX": vbox(),
     "carriage returns": text(end="\r\n"),
     "old Macintosh": text(end="\r"),
     "UTF-16": text(coding="utf-16"),
