@@ -126,8 +126,8 @@ def labview(columns: str = "One", mark: str = ".") -> Habit:
 def vbox() -> Habit:
     """A text of VBOX, whose times are those of a clock without colons, here around a full minute."""
     head = (
-        "File created on 05/01/2026 at 10:15:30\n\n[header]\nsatellites\ntime\nvelocity kmh\nMotor_Torque\n\n[channel units]\n"
-        "Nm\n\n[comments]\nVBOX 3i\n\n[column names]\nsats time velocity Motor_Torque \n\n[data]"
+        "File created on 05/01/2026 at 10:15:30\n\n[header]\nsatellites\ntime\nvelocity kmh\nMotor_Torque\n\n"
+        "[channel units]\nNm\n\n[comments]\nVBOX 3i\n\n[column names]\nsats time velocity Motor_Torque \n\n[data]"
     )
     stamps = (f"1015{57.0 + t:05.2f}" if t < 3.0 else f"1016{t - 3.0:05.2f}" for t in TIME)
     rows = [f"008 {stamp} {V[k]:07.3f} {T[k]:+.6E}" for k, stamp in enumerate(stamps)]
