@@ -42,7 +42,7 @@ def run(args: Arguments) -> int:
             raise DrivelineError(f"{args.made}: its command made no {args.made.name} and ended with exit code {code}")
         now = read_record(found)
         for difference in different_origin(before, now):
-            print(f"made by others: {plain(difference)}")
+            print(f"made differently: {plain(difference)}")
         numbers = list(different_numbers(before, there.parent, now, found.parent))
     for difference in numbers:
         print(f"other numbers: {plain(difference)}")

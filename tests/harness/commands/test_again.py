@@ -67,7 +67,7 @@ def test_what_made_it_is_named_where_it_was_something_else(
 ) -> None:
     code, out, _ = answer(capsys, "again", str(with_record(made, tmp_path, change)))
     (line, same) = out.splitlines()
-    assert line.startswith("made by others: ")
+    assert line.startswith("made differently: ")
     assert named in line
     assert (code, same) == (0, f"the same, to the last bit: {NAME}.csv")
 
