@@ -9,7 +9,7 @@ KINDS = {
 }
 """The files that a figure can be, and what for."""
 
-USUAL_KINDS = ("png", "pdf")
+USUAL_KINDS = ("png",)
 
 
 class FigureOptions(NamedTuple):

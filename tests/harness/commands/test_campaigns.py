@@ -198,7 +198,7 @@ def test_the_folder_of_a_search_gets_gains_candidates_and_figures(search, tmp_pa
     folder = tmp_path / "search"
     assert search() == 0
     files = {path.name for path in folder.iterdir()}
-    assert files == {"gains.toml", "evaluations.csv", "search.json", "front.png", "front.pdf"}
+    assert files == {"gains.toml", "evaluations.csv", "search.json", "front.png"}
     gains = read_parameters(folder / "gains.toml")
     assert gains.keys() == design().keys()
     assert gains["k_d"] != pytest.approx(design()["k_d"], rel=1e-3)

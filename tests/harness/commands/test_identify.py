@@ -58,8 +58,8 @@ def test_the_car_is_found_and_all_files_are_there_and_a_second_run_makes_the_sam
     folder = tmp_path / "out"
     assert identify() == 0
     message = capsys.readouterr().out
-    assert {path.name for path in folder.iterdir()} == FILES | DRAWN | {name[:-3] + "pdf" for name in DRAWN}
-    written = {str(folder / name) for name in FILES} | {f"{folder / name} (and .pdf)" for name in DRAWN}
+    assert {path.name for path in folder.iterdir()} == FILES | DRAWN
+    written = {str(folder / name) for name in FILES | DRAWN}
     assert {line.split(": ")[1] for line in message.splitlines() if line.startswith("written")} == written
     assert "identified with load torque, by prediction error: J_2 is that of the wheels alone, C that" in message
     assert "warning" not in message
