@@ -115,7 +115,7 @@ def test_a_window_and_the_kinds_of_figures_are_those_that_are_asked_for() -> Non
             options_for(start, end)
     asked = Figures(figures=("svg", "png", "svg"))
     assert asked.options("said") == FigureOptions("said", None, ("svg", "png"))
-    assert Figures().options("") == FigureOptions("", None, ("png", "pdf"))
+    assert Figures().options("") == FigureOptions("", None, ("png",))
 
 
 def test_a_folder_is_no_file_a_file_no_folder_and_one_for_results_is_tried(tmp_path: Path) -> None:
