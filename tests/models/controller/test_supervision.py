@@ -233,14 +233,14 @@ def test_the_damping_fades_out_at_rest() -> None:
 
 def test_signals_are_bridged_before_they_lead_to_fallback() -> None:
     """What was added last fades while the law has lost its estimate."""
-    x, p = started(ROLLING, t_bad=2.0 * T_S, t_fade=2.0 * T_S, k_v=1.0, omega_v=0.0, jump=3.0)
+    x, p = started(ROLLING, t_bad=2.0 * T_S, t_fade=4.0 * T_S, k_v=1.0, omega_v=0.0, jump=3.0)
     x = OTHER.update(x, ROLLING._replace(omega_1_meas=160.0), p)
     seen = []
-    for k in range(5):
+    for k in range(7):
         x = OTHER.update(x, ROLLING._replace(omega_1_meas=math.nan, T_mot_est=0.001 * k), p)
         seen.append((x.status, x.level))
         assert x.T_damp == pytest.approx(-10.0 * x.level, abs=0.2)
-    assert seen == [(WITH_WHEEL_SPEED, 1.0)] * 2 + [(FALLBACK, 0.5), (FALLBACK, 0.0), (FALLBACK, 0.0)]
+    assert seen == [(WITH_WHEEL_SPEED, 1.0)] * 2 + [(FALLBACK, level) for level in (0.75, 0.5, 0.25, 0.0, 0.0)]
     assert OTHER.output(x, ROLLING, p).cause == causes.SPEED_RANGE
 
 
