@@ -216,9 +216,15 @@ def content(
             for system, fit in fits.items()
         },
         "inputs": {str(path): digest(path) for path in inputs if path is not None},
-        "files": {path.name: digest(path) if path.is_file() else None for path in files},
+        "files": {_name(path, files): digest(path) if path.is_file() else None for path in files},
         "units": {name: unit for fit in fits.values() for name, unit in _units(fit).items()},
     }
+
+
+def _name(path: Path, files: Sequence[Path]) -> str:
+    """Of a file in a record: with its folder where another one has the same."""
+    same = [other for other in files if other.name == path.name]
+    return path.name if len(same) == 1 else f"{path.parent.name}/{path.name}"
 
 
 def _units(fit: Fit) -> dict[str, str]:

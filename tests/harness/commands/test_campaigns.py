@@ -153,7 +153,7 @@ def test_the_folder_of_robustness_gets_the_runs_and_the_figures(robustness, tmp_
     assert (folder / "runs.csv").read_text().count("\n") == 1 + 2 * 2 * 3
     assert (folder / "draws.csv").read_text().startswith("number,noise,J_2,C,phi_B,tau,m,delay,g_T,o_T,g_w2,loss\n")
     record = json.loads((folder / "robustness.json").read_text())
-    assert record["files"][:3] == ["runs.csv", "draws.csv", "summary.csv"]
+    assert list(record["files"])[:3] == ["runs.csv", "draws.csv", "summary.csv"]
     assert "TwoMassDriveline, DampingController: bounded" in message
 
 

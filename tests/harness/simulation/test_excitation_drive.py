@@ -108,7 +108,7 @@ def test_same_input_same_bytes_and_another_seed_others(record) -> None:
 def test_what_made_it_stands_beside_it_and_another_drive_does_not_replace_it(record, capsys) -> None:
     path = record("--amplitude", "25")
     made = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
-    assert made["files"] == [path.name]
+    assert list(made["files"]) == [path.name]
     assert made["run"]["demand"] == {
         "mean": 10.0, "amplitude": 25.0, "clock": 0.04, "order": 9, "duration": 2.5, "speed": 15.0,
         "slope": made["run"]["demand"]["slope"],
