@@ -22,6 +22,9 @@ WORDS = """
 EMPTY = frozenset(WORDS.split()) | {"", "no data", "not available", "no value", "signal not available"}
 """What loggers and spreadsheets write where there is no value, in small letters."""
 
+SPELLINGS = sorted({spelling for word in EMPTY for spelling in (word, word.upper(), word.title(), word.capitalize())})
+"""Of these words, for a parser that looks for them letter by letter."""
+
 NO_NUMBER = re.compile(r"[+-]?1\.#(qnan|snan|ind|nan)0*")
 """As C of Microsoft prints it."""
 
@@ -37,9 +40,6 @@ GROUPED = {
 
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}(\1\d{3})*", re.ASCII)
 """Numbers that are whole in one country and have decimals in another."""
-
-PLAIN_NUMBERS = frozenset("0123456789+-.eE")
-
 
 TRUTHS = {"true": 1.0, "false": 0.0}
 """Of a column that has nothing else."""
@@ -74,15 +74,6 @@ def decimal_of(cells: Sequence[str]) -> str:
 
 def numbers(cells: Sequence[str], decimal: str) -> tuple[np.ndarray, dict[int, str]]:
     """The numbers of a column, NaN where there is none, and what stands in the place of those that cannot be read."""
-    texts = [cell.strip().replace(",", ".") for cell in cells] if decimal == "," else [cell.strip() for cell in cells]
-    if PLAIN_NUMBERS.issuperset("".join(texts)) and (decimal == "." or not any("." in cell for cell in cells)):
-        try:
-            values = np.array(texts, dtype=float)  # the same numbers, all at once
-        except ValueError:
-            pass
-        else:
-            if np.isfinite(values).all():
-                return values, {}
     known = {cell: _number(cell, decimal) for cell in set(cells)}
     flags = {cell: TRUTHS.get(cell.strip().casefold()) for cell, value in known.items() if value is None}
     if flags and None not in flags.values() and all(value is None or value != value for value in known.values()):

@@ -16,7 +16,7 @@ import numpy as np
 from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
 from ..base.plain_text import plain
 from ..cosimulation.unit_conversion import converts, factor
-from .cells import is_missing, numbers
+from .cells import SPELLINGS, is_missing, numbers
 from .clock_times import seconds
 from .dialect import Dialect, dialect_of
 from .headings import split
@@ -164,7 +164,7 @@ class TextFile:
         return Piece(at[kept], values, unreadable)
 
     def _all_numbers(self, lines: Sequence[str], places: Sequence[int], widest: int) -> dict[int, np.ndarray] | None:
-        """The numbers, found all at once; None if something else is, or may be, among them."""
+        """The numbers, found all at once, NaN where there is none; None if something else is, or may be, among them."""
         text = "\n".join(lines).lower()
         if self._dialect.decimal == self._dialect.separator or any(truth in text for truth in TRUTHS):
             return None
@@ -172,7 +172,7 @@ class TextFile:
             values = self._table(lines, places, widest, float)
         except ValueError:
             return None
-        sound = all(len(column) == len(lines) and np.isfinite(column).all() for column in values.values())
+        sound = all(len(column) == len(lines) and not np.isinf(column).any() for column in values.values())
         return values if sound else None
 
     def _cells(self, lines: Sequence[str], places: Sequence[int], widest: int) -> dict[int, np.ndarray]:
@@ -207,7 +207,9 @@ class TextFile:
             usecols=list(places),
             index_col=False,
             dtype=kind,
-            na_filter=False,
+            na_filter=kind is float,
+            na_values=SPELLINGS,
+            keep_default_na=False,
             skip_blank_lines=False,
             quoting=quoting,  # type: ignore[arg-type]
             engine="c",
