@@ -1,7 +1,10 @@
 """The page of `driveline explore`: the file, what its settings mean, and what a user sees in a browser."""
 
+import json
 import re
+from base64 import b64decode
 from collections.abc import Iterator
+from gzip import decompress as gunzip
 from pathlib import Path
 from shutil import copyfile
 from typing import Any
@@ -177,6 +180,16 @@ def test_without_zig_and_module_one_line_says_what_is_missing(monkeypatch: pytes
     monkeypatch.setattr("driveline.fmus.native.compiler.find_spec", lambda _: None)
     with pytest.raises(module.DrivelineError, match=r"^there is no Zig .* pip install ziglang; or .* from a wheel$"):
         module.standard()
+
+
+@pytest.mark.slow
+def test_the_module_made_again_is_the_same_and_imports_nothing(tmp_path: Path) -> None:
+    kept = loops()
+    module.write_standard(tmp_path / "again.json")
+    assert json.loads((tmp_path / "again.json").read_text(encoding="utf-8")) == kept
+    code = gunzip(b64decode(kept["code"]))
+    assert code[:4] == b"\0asm"
+    assert b"wasi_snapshot" not in code
 
 
 @pytest.fixture
