@@ -23,6 +23,7 @@ from tests.models.controller.controllers import (
     bump,
     drive_inputs,
     run,
+    run_with_motor,
     shaken,
 )
 from tests.slow import slow
@@ -73,7 +74,7 @@ def test_the_estimator_changes_its_mode_without_a_bump() -> None:
 
 def test_a_torque_that_is_not_demanded_is_found_without_a_bump() -> None:
     """The change per sample is at most that of the damping torque itself and of its fading."""
-    always = run(BLOCK, shaken(2.0), with_motor=True, swing=1.0)
+    always = run_with_motor(BLOCK, shaken(2.0), swing=1.0)
     obeyed = [u._replace(T_mot_est=x.motor.loop.T_mot) for u, x in zip(shaken(2.0), always, strict=False)]
     states = run(BLOCK, [u._replace(T_mot_est=-50.0) if k >= 500 else u for k, u in enumerate(obeyed)], swing=1.0)
     assert states[500 + round(P.t_bad / T_S) + 2].status == states[-1].status == FALLBACK
@@ -124,7 +125,7 @@ def test_the_torque_is_limited_to_180_newton_metres() -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_damping_takes_and_adds_at_most_60_newton_metres(side: float) -> None:
     wild = [u._replace(omega_1_meas=150.0 + 12.0 * (u.omega_1_meas - 150.0)) for u in shaken(1.0, T_driver=side * 50.0)]
-    added = [x.T_damp for x in run(BLOCK, wild, with_motor=True, swing=1.0, t_land=0.0)]
+    added = [x.T_damp for x in run_with_motor(BLOCK, wild, swing=1.0, t_land=0.0)]
     assert (min(added), max(added)) == pytest.approx((-60.0, 60.0), abs=1e-12)
 
 

@@ -68,13 +68,21 @@ any_input = st.builds(
 )
 
 
-def run(block: SampledBlock, inputs: Iterable[Input], with_motor: bool = False, **parameters: float) -> list[State]:
-    """States: that of the start, and after each input; `with_motor` has the torque that is demanded of it."""
+def run(block: SampledBlock, inputs: Iterable[Input], **parameters: float) -> list[State]:
+    """States: that of the start, and after each input."""
     inputs, p = list(inputs), block.Parameters(**parameters)
     states = [block.start(inputs[0], p)]
     for u in inputs:
-        u = u._replace(T_mot_est=states[-1].motor.loop.T_mot) if with_motor else u
         states.append(block.update(states[-1], u, p))
+    return states
+
+
+def run_with_motor(block: SampledBlock, inputs: Iterable[Input], **parameters: float) -> list[State]:
+    """As `run`, but the motor has the torque that is demanded of it."""
+    inputs, p = list(inputs), block.Parameters(**parameters)
+    states = [block.start(inputs[0], p)]
+    for u in inputs:
+        states.append(block.update(states[-1], u._replace(T_mot_est=states[-1].motor.loop.T_mot), p))
     return states
 
 

@@ -23,6 +23,7 @@ from tests.models.controller.controllers import (
     drive_inputs,
     every_controller,
     run,
+    run_with_motor,
     shaken,
 )
 
@@ -299,7 +300,7 @@ def test_a_motor_that_sets_off_against_its_torque_is_not_believed(block: Sampled
 def test_damping_that_feeds_an_oscillation_lets_go_without_fallback() -> None:
     """And takes half swings that are forgotten at one a t_relapse to come back."""
     swinging = [u._replace(omega_1_meas=4.0 * u.omega_1_meas - 450.0) for u in shaken(1.0)]
-    states, p = run(OTHER, swinging + drive_inputs(15.0), with_motor=True)[1:], OTHER.Parameters()
+    states, p = run_with_motor(OTHER, swinging + drive_inputs(15.0))[1:], OTHER.Parameters()
     shown = [OTHER.output(x, ROLLING, p) for x in states]
     let_go = next(k for k, y in enumerate(shown) if y.cause == causes.FEEDS and y.T_damp == 0.0)
     assert let_go * T_S < 0.35
