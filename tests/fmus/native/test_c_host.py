@@ -98,7 +98,7 @@ def given(path: Path) -> list[str]:
         second.valueReference,
         20.0,
         tunable.valueReference,
-        0.9 * float(tunable.start),
+        0.9 * float(tunable.start or "nan"),
     ]
     return [str(each) for each in (description.guid, outputs, *values)]
 
@@ -109,7 +109,8 @@ def test_every_legal_host_gets_the_numbers_of_a_plain_one(both_built, legal_host
     fmpy.extract(str(path), str(tmp_path / "fmu"))
     library = tmp_path / "fmu" / "binaries" / fmpy.platform / f"{name}{fmpy.sharedLibraryExtension}"
     odd = copyfile(library, (tmp_path / ODD_FOLDER).mkdir() or tmp_path / ODD_FOLDER / library.name)
-    odd.chmod(0o555), odd.parent.chmod(0o555)
+    odd.chmod(0o555)
+    odd.parent.chmod(0o555)
     arguments = given(path)
 
     @cache
