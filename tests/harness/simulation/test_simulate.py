@@ -107,7 +107,7 @@ def test_how_a_car_comes_to_rest_does_not_depend_on_the_communication_step(
 ) -> None:
     """The teeth go to and fro in the gap until the car is off again: half a step of the brake shows fourfold there.
 
-    With control on the design model one decision of the controller falls otherwise: see test_step_dependence.
+    With control on the design model one decision of the controller falls otherwise: see ROUNDED of test_coupling.
     """
     stop = MANOEUVRES["launch_brake"]
     coarse, fine = (
