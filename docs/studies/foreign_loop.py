@@ -1,43 +1,47 @@
 """Recordings of a loop that is not ours, for identification: another integrator, other blocks, another logger.
 
-Motor, drive train and vehicle are blocks of their own, which are stepped one after the other every STEP and hold what
-they get from each other meanwhile, as co-simulation tools do. So torques act up to half a step earlier or later than
-they are recorded. Nothing of the estimator's model is used.
+Motor and car are blocks of their own, which are stepped one after the other every STEP, as co-simulation tools do: the
+car gets a torque that is held. So torques act up to half a step earlier or later than they are recorded. The channels
+are logged with delays of their own. Many cars are driven at once, one element of an array each.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, exp, sin, sqrt, tanh
 from pathlib import Path
 
 import numpy as np
 
 from driveline.harness.base.csv_file import write_csv
+from driveline.harness.manoeuvres.prbs import shift_register
 
-FINE = 1e-4
-"""Step of the integrator (Runge, Kutta) in s; delays are multiples of it."""
+STEP, PARTS = 1e-3, 2
+"""Step of the loop in s, and steps of the integrator (Runge, Kutta) in it."""
 
-STEP = 10
-"""Fine steps in a step of the loop, of 1 ms."""
+LOGGED = 0.002
+"""Between rows of the logger in s."""
 
-CLOCK = 0.04
-"""Time in s for which the demand stays at least."""
+SETTLED = 0.1
+"""Time in s before the first row."""
+
+SPEED = 15.0 / 3.6
+"""In m/s, at the beginning."""
+
+ORDERS = ("averaged", "motor first", "car first")
+"""The car gets the mean of the motor torque over the step, that of its end, or that of its beginning."""
 
 
 @dataclass(frozen=True)
 class Car:
-    """Motor side but for r, m: inertias in kg.m2, C in N.m/rad, phi_B in rad, tau in s; tyre c_t in N.m/rad and d_t in
-    N.m.s/rad, in series: a spring above c_t/d_t rad/s, a damper below."""
+    """Motor side but for i, r, m: inertias in kg.m2, C in N.m/rad, phi_B in rad, tau in s."""
 
-    J_1: float
     J_2: float
     C: float
     phi_B: float
-    tau: float
-    i: float
-    r: float
-    m: float
-    c_t: float
-    d_t: float
+    J_1: float = 0.055
+    tau: float = 0.003
+    i: float = 9.0
+    r: float = 0.29
+    m: float = 1450.0
 
     @property
     def known(self) -> dict[str, float]:
@@ -45,136 +49,146 @@ class Car:
         return {name: getattr(self, name) for name in ("J_1", "i", "r", "m")}
 
 
-CARS = (
-    Car(J_1=0.055, J_2=0.42, C=96.0, phi_B=0.11, tau=0.0036, i=9.0, r=0.29, m=1450.0, c_t=610.0, d_t=34.0),
-    Car(J_1=0.09, J_2=0.24, C=231.0, phi_B=0.07, tau=0.0024, i=10.5, r=0.34, m=2200.0, c_t=2400.0, d_t=30.0),
-    Car(J_1=0.04, J_2=0.3, C=71.0, phi_B=0.21, tau=0.0031, i=8.0, r=0.28, m=1000.0, c_t=420.0, d_t=25.0),
-)
-
-
 @dataclass(frozen=True)
 class Loop:
     """How it is stepped and logged.
 
     Attributes:
-        order: "motor first", "plant first" (Gauss, Seidel: the drive train gets the motor torque at the end or at the
-            beginning of the step) or "averaged" (its mean over the step).
-        load_held: whether the load torque is held too: the vehicle is stepped after the drive train.
-        T_s: between samples of the logger in s.
+        order: one of ORDERS.
         late_omega, late_T_mot, late_T_load: delays of the logger in s.
-        mean, amplitude: of the demand in N.m.
-        duration: in s.
+        amplitude, mean: of the demand in N.m.
+        clock: time in s for which it stays at least.
+        gain: of the measurement wheels.
     """
 
-    order: str = "motor first"
-    load_held: bool = False
-    T_s: float = 0.002
+    order: str = ORDERS[0]
     late_omega: float = 0.0
     late_T_mot: float = 0.0
     late_T_load: float = 0.0
-    mean: float = 10.0
     amplitude: float = 30.0
-    duration: float = 10.0
+    mean: float = 10.0
+    clock: float = 0.04
+    gain: float = 1.01
 
     @property
     def shifts(self) -> tuple[float, float]:
-        """Time in s by which recorded motor and load torque are behind the motor speed that they act on: that of the
+        """Time in s by which motor and load torque are recorded after the motor speed that they act on: that of the
         logger and of holding."""
-        half = 0.5 * STEP * FINE
-        held = {"motor first": half, "plant first": -half, "averaged": 0.0}[self.order]
-        late_load = self.late_T_load - self.late_omega - (half if self.load_held else 0.0)
-        return self.late_T_mot - self.late_omega + held, late_load
+        held = {"averaged": 0.0, "motor first": 0.5 * STEP, "car first": -0.5 * STEP}[self.order]
+        return self.late_T_mot - self.late_omega + held, self.late_T_load - self.late_omega
 
 
-def driven(car: Car, loop: Loop, seed: int) -> dict[str, np.ndarray]:
-    """Signals every FINE seconds, before the logger."""
+def drawn(count: int, seed: int) -> tuple[list[Car], list[Loop]]:
+    """Cars and loops at random: half without skew, half with up to 1 ms of each channel."""
     rng = np.random.default_rng(seed)
-    bits = rng.integers(0, 2, int(loop.duration / CLOCK) + 2)
-    demand = loop.mean + loop.amplitude * (2.0 * bits - 1.0)
-    steps, clock = round(loop.duration / FINE) // STEP + 20, round(CLOCK / FINE)
-    J_v = car.m * car.r**2 / car.i**2
-    omega = 9.0 * 15.0 / 3.6 / car.r
-    x = [omega, omega, car.phi_B + loop.mean / car.C, omega, loop.mean / car.c_t]
-    T, rate, T_load = float(demand[0]), 0.0, -loop.mean
-    out = np.empty((steps * STEP, 5))
-    for k in range(steps):
-        T_ref = float(demand[min(k * STEP // clock, len(demand) - 1)])
-        before, torques = T, []
-        for _ in range(STEP):
-            T, rate = _lag(T, rate, T_ref, car.tau)
-            torques.append(T)
-        acting = {"motor first": T, "plant first": before, "averaged": (sum(torques) + 0.5 * (before - T)) / STEP}
-        held = T_load if loop.load_held else None
-        for j in range(STEP):
-            x = _runge_kutta(x, acting[loop.order], held, car, loop.mean, J_v)
-            T_load = -car.c_t * x[4]
-            out[k * STEP + j] = x[0], x[1], torques[j], T_ref, T_load
-    return dict(zip(("omega_1", "omega_2", "T_mot", "T_ref", "T_load"), out.T, strict=True))
 
+    def between(low: float, high: float) -> float:
+        """Evenly on a logarithmic scale."""
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
-def _lag(T: float, rate: float, T_ref: float, tau: float) -> tuple[float, float]:
-    """Motor control after FINE seconds of a demand that is held: the exact solution."""
-    a = 1.0 / (sqrt(2.0) * tau)
-    e, c, s = exp(-a * FINE), cos(a * FINE), sin(a * FINE)
-    off, slope = T - T_ref, (rate + a * (T - T_ref)) / a
-    return T_ref + e * (off * c + slope * s), e * a * (slope * c - off * s - off * c - slope * s)
-
-
-def _derivative(
-    x: list[float], T_mot: float, T_load: float | None, car: Car, resisting: float, J_v: float
-) -> list[float]:
-    """Of motor and wheel speed, twist, vehicle speed and deflection of the tyre, motor side."""
-    omega_1, omega_2, phi, v, u = x
-    y = phi - car.phi_B if phi > car.phi_B else phi + car.phi_B if phi < -car.phi_B else 0.0
-    T_gear, tyre = car.C * y, car.c_t * u
-    load = -tyre if T_load is None else T_load
-    drag = resisting * tanh(v)
-    return [
-        (T_mot - T_gear) / car.J_1,
-        (T_gear + load) / car.J_2,
-        omega_1 - omega_2,
-        (tyre - drag) / J_v,
-        omega_2 - v - tyre / car.d_t,
+    cars = [
+        Car(between(0.18, 0.65), between(70.0, 200.0), between(0.05, 0.25), between(0.04, 0.08), between(0.002, 0.004))
+        for _ in range(count)
     ]
+    loops = []
+    for k in range(count):
+        late = rng.uniform(0.0, 0.001, 3) * (k % 2)
+        order = ORDERS[rng.integers(3)] if k % 2 else ORDERS[0]
+        amplitude, clock = float(rng.choice([15.0, 30.0, 50.0])), float(rng.choice([0.03, 0.04, 0.05]))
+        loops.append(Loop(order, *map(float, late), amplitude, clock=clock, gain=float(rng.normal(1.0, 0.01))))
+    return cars, loops
 
 
-def _runge_kutta(
-    x: list[float], T_mot: float, T_load: float | None, car: Car, resisting: float, J_v: float
-) -> list[float]:
-    def at(other: list[float], by: float) -> list[float]:
-        there = [a + by * FINE * b for a, b in zip(x, other, strict=True)]
-        return _derivative(there, T_mot, T_load, car, resisting, J_v)
+def driven(cars: Sequence[Car], loops: Sequence[Loop], seeds: Sequence[int], duration: float = 10.0) -> np.ndarray:
+    """The demand, the motor torque, and at the same times omega_1, omega_2 and T_load of each car, shape
+    (steps + 1, 5, cars), STEP/PARTS apart."""
+    J_1, J_2, C, phi_B, tau, i, r, m = (
+        np.array([getattr(car, name) for car in cars]) for name in ("J_1", "J_2", "C", "phi_B", "tau", "i", "r", "m")
+    )
+    steps = round((SETTLED + duration) / STEP) + 10
+    demand = np.array([_demand(loop, steps, seed) for loop, seed in zip(loops, seeds, strict=True)]).T
+    T_mot = _answer(demand, tau)
+    acting = np.empty((steps, len(cars)))
+    for k, loop in enumerate(loops):
+        first, last = T_mot[:-1:PARTS, k], T_mot[PARTS::PARTS, k]
+        mean = (first + 4.0 * T_mot[1::PARTS, k] + last) / 6.0
+        acting[:, k] = {"averaged": mean, "motor first": last, "car first": first}[loop.order]
+    c_slip, sigma_s, d_low, v_low, g = 140_000.0, 0.05, 4000.0, 0.5, 9.81
 
-    a = _derivative(x, T_mot, T_load, car, resisting, J_v)
-    b = at(a, 0.5)
-    c = at(b, 0.5)
-    d = at(c, 1.0)
-    return [x0 + FINE / 6.0 * (p + 2.0 * q + 2.0 * r + s) for x0, p, q, r, s in zip(x, a, b, c, d, strict=True)]
+    def force(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        slip = r * x[1] / i - x[3]
+        return c_slip / sigma_s * x[4] + d_low * slip / (1.0 + (x[3] / v_low) ** 2), slip
+
+    def derivative(x: np.ndarray, T: np.ndarray) -> np.ndarray:
+        F, slip = force(x)
+        T_gear = C * (x[2] - np.clip(x[2], -phi_B, phi_B))
+        resists = m * g * 0.012 * np.tanh(x[3] / 0.1) + 0.42 * x[3] * abs(x[3])
+        relaxes = np.maximum(abs(r * x[1] / i), abs(x[3])) / sigma_s
+        return np.array(
+            [(T - T_gear) / J_1, (T_gear - r * F / i) / J_2, x[0] - x[1], (F - resists) / m, slip - relaxes * x[4]]
+        )
+
+    omega = np.full(len(cars), SPEED) / r * i
+    x = np.array([omega, omega, phi_B + T_mot[0] / C, omega * r / i, 0.0 * omega])
+    h, out = STEP / PARTS, np.empty((steps * PARTS + 1, 5, len(cars)))
+    out[0] = demand[0], T_mot[0], x[0], x[1], -r * force(x)[0] / i
+    for k in range(steps * PARTS):
+        T = acting[k // PARTS]
+        a = derivative(x, T)
+        b = derivative(x + 0.5 * h * a, T)
+        c = derivative(x + 0.5 * h * b, T)
+        d = derivative(x + h * c, T)
+        x = x + h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
+        out[k + 1] = demand[k // PARTS], T_mot[k + 1], x[0], x[1], -r * force(x)[0] / i
+    return out
 
 
-def logged(car: Car, loop: Loop, seed: int, path: Path) -> None:
+def _demand(loop: Loop, steps: int, seed: int) -> np.ndarray:
+    bits = np.roll(np.array(shift_register(511), dtype=float), np.random.default_rng(seed).integers(511))
+    # whole numbers of the loop's clock: the demand changes in the row that is logged
+    number = np.arange(steps) // round(loop.clock / STEP)
+    return loop.mean + loop.amplitude * (2.0 * bits[number % 511] - 1.0)
+
+
+def _answer(demand: np.ndarray, tau: np.ndarray) -> np.ndarray:
+    """Of motor control (paper, eq. (1)), STEP/PARTS apart: the exact solution for a demand that is held."""
+    h, rate = STEP / PARTS, 1.0 / (np.sqrt(2.0) * tau)
+    e, c, s = np.exp(-rate * h), np.cos(rate * h), np.sin(rate * h)
+    T, slope = demand[0], 0.0 * demand[0]
+    out = [T]
+    for held in np.repeat(demand, PARTS, axis=0):
+        off = T - held
+        turn = slope / rate + off
+        T, slope = held + e * (off * c + turn * s), e * rate * (turn * c - off * s - off * c - turn * s)
+        out.append(T)
+    return np.array(out)
+
+
+def logged(true: np.ndarray, car: Car, loop: Loop, seed: int, path: Path, duration: float = 10.0) -> None:
     """Writes the recording of a drive: motor speed to .15 rad/s and rounded, torque to .3 N.m, both measurement wheels
-    to 10 N.m per 2 ms with an offset and 1 % too much, wheel speed by messages every 20 ms."""
-    true, rng = driven(car, loop, seed), np.random.default_rng([seed, 1])
-    every, first = round(loop.T_s / FINE), 10 * STEP
-    ticks = np.arange(first, first + round(loop.duration / FINE), every)
-    n = len(ticks)
+    to 10 N.m with an offset and a gain, wheel speed by messages every 20 ms.
 
-    def late(name: str, by: float) -> np.ndarray:
-        return true[name][ticks - 1 - round(by / FINE)]  # row k is the end of fine step k
+    Args:
+        true: of this car from `driven`, shape (steps + 1, 5).
+    """
+    rng, times = np.random.default_rng([seed, 1]), np.arange(len(true)) * STEP / PARTS
+    rows = SETTLED + np.arange(0.0, duration - 0.5 * LOGGED, LOGGED)
+    n, messages = len(rows), np.floor(rows / 0.02 + 1e-9) * 0.02 - 0.02
+    demand, T_mot, omega_1, omega_2, T_load = true.T
 
-    T_wheel = -car.i * late("T_load", loop.late_T_load)
-    noise = 10.0 * sqrt(0.002 / loop.T_s)
-    message = (ticks // 200) * 200 - 1
+    def late(signal: np.ndarray, by: float) -> np.ndarray:
+        return np.interp(rows - by, times, signal)
+
+    noisy = late(omega_1, loop.late_omega) + 0.15 * rng.standard_normal(n)
     columns = {
-        "time [s]": (ticks - first) * FINE,
-        "omega_1 [rad/s]": np.round((late("omega_1", loop.late_omega) + 0.15 * rng.standard_normal(n)) / 0.1) * 0.1,
-        "T_mot [N.m]": late("T_mot", loop.late_T_mot) + 0.3 * rng.standard_normal(n),
-        "T_ref [N.m]": true["T_ref"][ticks],
-        "omega_wheel [rad/s]": np.round(true["omega_2"][message] / car.i, 2),
-        "T_wheel [N.m]": 1.01 * T_wheel + 8.0 + noise * rng.standard_normal(n),
+        "time [s]": rows,
+        "omega_1 [rad/s]": np.round(noisy / 0.1) * 0.1,
+        "T_mot [N.m]": late(T_mot, loop.late_T_mot) + 0.3 * rng.standard_normal(n),
+        "T_ref [N.m]": demand[np.round(rows / STEP * PARTS).astype(int)],
+        "omega_wheel [rad/s]": np.round(np.interp(messages, times, omega_2) / car.i, 2),
+        "T_wheel [N.m]": loop.gain * -car.i * late(T_load, loop.late_T_load) + 8.0 + 10.0 * rng.standard_normal(n),
     }
-    rows = np.empty(n, dtype=[(heading, float) for heading in columns])
+    table = np.empty(n, dtype=[(heading, float) for heading in columns])
     for heading, values in columns.items():
-        rows[heading] = np.round(values, 6)
-    write_csv(rows, path)
+        table[heading] = np.round(values, 6)
+    write_csv(table, path)

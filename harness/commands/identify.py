@@ -21,7 +21,7 @@ examples:
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ..recordings.measurement import Measurement
     from ..views.figure_options import FigureOptions
 
-FREE = ("J_1", "d", "g_T")
+FREE = ("J_1",)
 
 IN_HELP = {
     "columns": ", ".join(examples("time", "T_mot", "omega_1", "omega_wheel")),
@@ -51,7 +51,7 @@ IN_HELP = {
 class Arguments(Recorded, Figures, Replacing, Report, Printing):
     recording: Path = recording("the recorded test drive")
     vehicle: Path | None = file_of("what is known of the car (default: that of all blocks)")
-    free: tuple[str, ...] = option((), "identify this too (repeatable); d is freed where the data ask", choices=FREE)
+    free: tuple[str, ...] = option((), "identify this too", choices=FREE)
     output: Path | None = option(
         None, "the vehicle file (default: results/identify/RECORDING_car.toml)", Path, metavar="FILE.toml"
     )
@@ -66,7 +66,7 @@ def run(args: Arguments) -> int:
 
     vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
     output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
-    require_possible(args.free, output)
+    require_possible(output)
     plant, _, _ = records(vehicle)
     recording = read_measurement(args.recording, plant.i, plant.r, **args.as_read)
     options = args.options("", (recording.name, float(recording.time[0]), float(recording.time[-1])))
@@ -101,18 +101,16 @@ def all_found(output: Path) -> Path:
     return output.with_name(f"{output.stem}_identified.json")
 
 
-def require_possible(free: Sequence[str], output: Path) -> None:
+def require_possible(output: Path) -> None:
     """
     Raises:
-        DrivelineError: the vehicle file cannot be written, or what is to be identified cannot be told apart.
+        DrivelineError: the vehicle file cannot be written.
     """
     if output.suffix != ".toml":
         raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
     there = next(folder for folder in output.absolute().parents if folder.exists())
     if not (there.is_dir() and os.access(there, os.W_OK)):
         raise DrivelineError(f"--output {output}: {there} is no folder that can be written to")
-    if {"J_1", "g_T"} <= set(free):
-        raise DrivelineError("--free J_1 --free g_T: nothing sets their scale together; free one of them")
 
 
 def write(identified: "Identified", recording: Path, vehicle: Mapping[str, Any], output: Path) -> tuple[Path, Path]:
@@ -131,17 +129,14 @@ def write(identified: "Identified", recording: Path, vehicle: Mapping[str, Any],
 
 
 def draw(identified: "Identified", recording: "Measurement", stem: Path, options: "FigureOptions") -> list[Path]:
-    """The figures, STEM_simulation.png and so on."""
-    from ..identification.fit_figures import plot_innovations, plot_simulation
-    from ..identification.uncertainty_figures import plot_cost, plot_response
+    """The figures, STEM_prediction.png and STEM_certainty.png."""
+    from ..identification.fit_figures import plot_certainty, plot_prediction
 
     def named(what: str) -> Path:
         return stem.with_name(f"{stem.name}_{what}")
 
-    one = options._replace(caption=f"{recording.name}, identified {identified.name}, by {identified.method}")
+    one = options._replace(caption=f"{recording.name}, identified {identified.name}")
     return [
-        *plot_simulation(identified, recording, named("simulation"), one),
-        *plot_innovations(identified, named("innovations"), one),
-        *plot_cost(identified, named("cost"), one),
-        *plot_response(identified, named("response"), one),
+        *plot_prediction(identified, recording, named("prediction"), one),
+        *plot_certainty(identified, named("certainty"), one),
     ]

@@ -1,37 +1,56 @@
-"""Figures of an identified model against its recording: free runs (paper, Fig. 5) and innovations."""
+"""Figures of an identified model: prediction and recording, and how certain it is."""
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
-from scipy.stats import norm
+from scipy.signal import csd, welch
+from scipy.stats import chi2
 
+from ..metrics.spectrum import decibels
 from ..recordings.measurement import Measurement
-from ..views.colours import BLUE, GREY
+from ..views.colours import BLACK, BLUE, GREY, VERMILION
 from ..views.figure_options import PLAIN, FigureOptions
 from ..views.figure_style import plot
-from ..views.panels import Axis, Band, Bars, Curve, Panel, Points
-from .free_runs import FreeRuns, end_of, free_runs
+from ..views.panels import DASHED, DOTTED, SOLID, Axis, Band, Curve, Level, Panel, Part, Points
+from .car_file import MEANS
+from .drive_train_response import FREQUENCIES, Tyre, response
+from .free_runs import SIMULATED, free_runs
 from .identify import Identified
-from .prediction import filtered
-from .quality import SIMULATED, Z_95, autocorrelation
+from .prediction import BURN_IN
 
 STRETCH = 3.0
 """Of the recording, its end, in s."""
 
-LAGS = 0.2
-"""Lag in s up to which the autocorrelation is drawn."""
+LABELS = {"J_2": "$J_2$", "C": "$C$", "phi_B": "$\\varphi_B$"}
+"""The parameters whose pairs are drawn."""
 
-BARS = 51
-"""Of the histogram."""
+INSIDE = float(np.sqrt(chi2.ppf(0.95, 2)))
+"""Distance of two parameters in their covariance, within which 95 % are."""
 
-NORMAL = 4.0
-"""Size up to which the normal density is drawn at least."""
+ABOUT = 1.6
+"""Half of the width of a panel over that of its ellipse."""
+
+FREQUENCY = Axis("frequency in Hz", (float(FREQUENCIES[0]), float(FREQUENCIES[-1])))
+
+BEYOND = (-3.0, 6.0)
+"""In dB below and above all that is finite, the ends of the axis; a model without damping has no highest."""
+
+WINDOW = 1024
+"""Samples of a window of the spectra."""
+
+DRAWS, PERCENTILES = 500, (2.5, 97.5)
+"""Of the parameters, and between which the band lies."""
+
+READING = (
+    "0 dB: 1 rad/s per N·m; bands, ellipses: 95 % by the covariance; the recording crosses the gap, the models do not"
+)
 
 
-def plot_simulation(
+def plot_prediction(
     identified: Identified, recording: Measurement, stem: Path, options: FigureOptions = PLAIN
 ) -> list[Path]:
-    """Measured and simulated speeds and torques in the units of the file, over a window or the last STRETCH, as in
+    """Measured and predicted speeds and torques in the units of the file, over a window or the last STRETCH, as in
     Fig. 5 of the paper.
 
     Args:
@@ -42,52 +61,67 @@ def plot_simulation(
         The files written.
     """
     begin, end = float(recording.time[0]), float(recording.time[-1])
-    window = options.clipped(begin, end) if options.window else end_of(recording, STRETCH)
-    rows = [[panel] for panel in simulated(recording, free_runs(identified, recording, window))]
-    title = f"Measured and simulated\n{headline(identified)}"
+    window = options.clipped(begin, end) if options.window else (max(end - STRETCH, begin), end)
+    rows = [[panel] for panel in predicted(identified, recording, window)]
+    title = f"Measured and predicted\n{identified.name}"
     return plot(rows, Axis("time in s", window), title, stem, options, size=(7.2, 1.75))
 
 
-def headline(identified: Identified) -> str:
-    """What was identified and how, for titles."""
-    return f"{identified.name}; {identified.method}"
-
-
-def simulated(recording: Measurement, runs: FreeRuns) -> list[Panel]:
+def predicted(identified: Identified, recording: Measurement, window: tuple[float, float]) -> list[Panel]:
     """Speeds and torques, measured and of free runs, in the units of the file; the recorded wheel speed as much earlier
-    as the recording tells that it is late."""
-    file_units, t = recording.file_units, recording.time
-    omega_2 = recording.omega_2 if recording.valid is None else np.where(recording.valid, recording.omega_2, np.nan)
-    late = next((delay.time for delay in recording.delays if delay.of == "omega_2"), 0.0)
-    alone = "simulated, wheels and vehicle as one" if recording.T_load is None else "simulated"
-    label = f"measured, drawn {1e3 * late:.0f} ms earlier" if late else "measured"
+    as it is late.
+
+    Args:
+        window: from and to when in s, as recorded; the first runs begin after BURN_IN.
+    """
+    file_units, t, T_s = recording.file_units, recording.time, identified.drive.T_s
+    first = max(round((window[0] - t[0]) / T_s), round(BURN_IN / T_s))
+    first = max(min(first, len(identified.drive) - round(SIMULATED / T_s)), 1)
+    found = identified.found
+    at, runs = free_runs(identified.predictor, found.p, found.predicted.states, first)
+    gap = np.full((len(at), 1), np.nan)
+    x = np.hstack([t[at], gap]).ravel()
+    omega_1, omega_2, T_gear, T_load = (np.hstack([runs[..., k], gap]).ravel() for k in range(4))
+    valid = np.ones(len(t), bool) if recording.valid is None else recording.valid
+    age = identified.late_wheel_speed.time if identified.late_wheel_speed else 0.0
 
     def measured(y: np.ndarray, quantity: str, label: str = "measured", width: float = 1.6) -> Curve:
         return Curve(t, y / file_units[quantity].factor, label, GREY, width=width)
 
     def model(y: np.ndarray, quantity: str, label: str = "", width: float = 1.0) -> Curve:
-        return Curve(runs.time, y / file_units[quantity].factor, label, BLUE, width=width)
+        return Curve(x, y / file_units[quantity].factor, label, BLUE, width=width)
 
-    motor = measured(recording.omega_1, "omega_1", width=2.4)
-    wheels = measured(omega_2, "omega_2", label)._replace(x=t - late, held=True)
-    torque = measured(recording.T_mot, "T_mot", "motor, measured")
+    off = np.hstack([runs[..., 0] - recording.omega_1[at], gap]).ravel()
+    wheels = measured(
+        np.where(valid, recording.omega_2, np.nan), "omega_2", f"measured, drawn {1e3 * age:.0f} ms earlier"
+    )
+    runs_of = f"predicted {SIMULATED:g} s from the motor torque alone"
     panels = [
         Panel(
             f"motor speed\n{file_units['omega_1']}",
-            [motor, model(runs.omega_1, "omega_1", f"simulated, free runs of {SIMULATED:g} s")],
+            [measured(recording.omega_1, "omega_1", width=2.4), model(omega_1, "omega_1", runs_of)],
         ),
-        Panel(f"difference\n{file_units['omega_1']}", [model(runs.error, "omega_1", width=0.6)], height=0.62),
-        Panel(f"wheel speed\n{file_units['omega_2']}", [wheels, model(runs.omega_2, "omega_2", alone)]),
-        Panel(f"torque\n{file_units['T_mot']}", [torque, model(runs.T_gear, "T_mot", "gear, simulated")]),
+        Panel(f"difference\n{file_units['omega_1']}", [model(off, "omega_1", width=0.6)], height=0.62),
+        Panel(
+            f"wheel speed\n{file_units['omega_2']}",
+            [wheels._replace(x=t - age, held=True), model(omega_2, "omega_2", "predicted")],
+        ),
+        Panel(
+            f"torque\n{file_units['T_mot']}",
+            [measured(recording.T_mot, "T_mot", "motor, measured"), model(T_gear, "T_mot", "gear, predicted")],
+        ),
     ]
     if recording.T_load is not None:
         load = measured(-recording.T_load, "T_load", "measured, positive when it drives", 1.0)
-        panels.append(Panel(f"load torque\n{file_units['T_load']}", [load]))
+        panels.append(
+            Panel(f"load torque\n{file_units['T_load']}", [load, model(-found.p.g_L * T_load, "T_load", "predicted")])
+        )
     return panels
 
 
-def plot_innovations(identified: Identified, stem: Path, options: FigureOptions = PLAIN) -> list[Path]:
-    """The innovations over time, their distribution and their autocorrelation.
+def plot_certainty(identified: Identified, stem: Path, options: FigureOptions = PLAIN) -> list[Path]:
+    """Frequency response from motor torque to motor speed with its 95 % band and what the recording itself shows, and
+    the 95 % ellipses of J_2, C and phi_B.
 
     Args:
         stem: path of the files without their ending.
@@ -95,34 +129,77 @@ def plot_innovations(identified: Identified, stem: Path, options: FigureOptions 
     Returns:
         The files written.
     """
-    size, T_s = innovations(identified), identified.drive.T_s
-    t = T_s * (len(identified.drive) + np.arange(1 - len(size), 1))
-    over_time = Panel("innovation over its\nstandard deviation", [Points(t, size, color=BLUE, size=1.7)])
-    x, title = Axis("time from the start of the recording in s", (0.0, t[-1])), f"Innovations\n{headline(identified)}"
-    rows = [[over_time], [distribution(size), autocorrelations(size, T_s)]]
-    return plot(rows, x, title, stem, options, size=(7.2, 2.1), same_y=False)
+    caption = f"{options.caption}\n{READING}; {MEANS[identified.name]}".strip()
+    rows = [*([panel] for panel in responses(identified)), ellipses(identified)]
+    title = f"Frequency response, teeth in contact, and how certain the parameters are\n{identified.name}"
+    return plot(rows, FREQUENCY, title, stem, options._replace(caption=caption), size=(7.2, 2.4), same_y=False)
 
 
-def innovations(identified: Identified) -> np.ndarray:
-    """What the filter did not foresee, over its standard deviation, once it has settled."""
-    through = filtered(identified.drive, identified.p, identified.noise)
-    return through.size[through.counted]
+def responses(identified: Identified) -> list[Panel]:
+    """Amplitude and phase of the recording and of the model, on its own and, with a tyre, with the load torque held."""
+    f, recorded = recorded_response(identified)
+    at = (f >= FREQUENCIES[0]) & (f <= FREQUENCIES[-1])
+    f, recorded = f[at], recorded[at]
+    own: list[tuple[Callable[..., Tyre | None], str, str, tuple[float, ...]]] = [
+        (identified.tyre_of, f"car on its own, peak at {identified.resonance:.2f} Hz", VERMILION, SOLID)
+    ]
+    models = [*own, *[(lambda _: None, "load torque held", BLUE, DASHED)] * identified.predictor.measured]
+    answers = [response(identified.p, FREQUENCIES, tyre(identified.p)) for tyre, *_ in models]
+    drawn = [drawn_responses(identified, tyre) for tyre, *_ in models]
+
+    def parts(of: Callable[[np.ndarray], np.ndarray]) -> Iterator[Part]:
+        yield Level(identified.resonance, VERMILION, DOTTED, upright=True)
+        yield Points(f, of(recorded), "recording", "#666666", 3.0)
+        for answer, others, (_, name, color, dashes) in zip(answers, drawn, models, strict=True):
+            low, high = np.percentile(of(others), PERCENTILES, axis=0)
+            yield Band(FREQUENCIES, low, high, color=color)
+            yield Curve(FREQUENCIES, of(answer), name, color, dashes)
+
+    amplitude, phase = (list(parts(of)) for of in (decibels, lambda answer: np.degrees(np.angle(answer))))
+    shown = np.concatenate([decibels(recorded), decibels(answers[0])])
+    shown = shown[np.isfinite(shown)]
+    return [
+        Panel("motor speed over\ntorque in dB", amplitude, bounds=(shown.min() + BEYOND[0], shown.max() + BEYOND[1])),
+        Panel("phase in degrees", phase, ticks={k: str(k) for k in range(-90, 91, 45)}, height=0.67),
+    ]
 
 
-def distribution(size: np.ndarray) -> Panel:
-    """Of the innovations, beside the normal one."""
-    largest = max(NORMAL, float(abs(size).max()))
-    density, edges = np.histogram(size, BARS, (-largest, largest), density=True)
-    x = np.linspace(-largest, largest, 401)
-    bars = Bars(0.5 * (edges[1:] + edges[:-1]), density, edges[1] - edges[0], "innovations", BLUE, 0.5)
-    normal = Curve(x, norm.pdf(x), "normal")
-    return Panel("density", [bars, normal], x=Axis("innovation over its standard deviation", (-largest, largest)))
+def drawn_responses(identified: Identified, tyre: Callable[..., Tyre | None], seed: int = 1) -> np.ndarray:
+    """omega_1/T_mot of parameters drawn from the covariance, shape (DRAWS, frequencies)."""
+    p, answer = identified.p, identified.found
+    centre = [getattr(p, name) for name in answer.free]
+    drawn = np.random.default_rng(seed).multivariate_normal(centre, answer.covariance, DRAWS)
+    others = [p._replace(**dict(zip(answer.free, map(float, values), strict=True))) for values in drawn]
+    # no damper drives, and no spring pushes
+    others = [
+        q._replace(**{n: max(getattr(q, n), 1e-3 * getattr(p, n)) for n in ("J_2", "C", "d", "c_t")}) for q in others
+    ]
+    return np.array([response(other, FREQUENCIES, tyre(other)) for other in others])
 
 
-def autocorrelations(size: np.ndarray, T_s: float) -> Panel:
-    """Of the innovations, with what white noise has."""
-    lags = np.arange(1, round(LAGS / T_s) + 1)
-    white = np.full(2, Z_95 / np.sqrt(len(size)))
-    band = Band(np.array([0.0, LAGS]), -white, white, "95 % of white noise", GREY, 0.4)
-    bars = Bars(lags * T_s, np.array([autocorrelation(size, int(lag)) for lag in lags]), 0.5 * T_s)
-    return Panel("autocorrelation", [band, bars], x=Axis("lag in s", (0.0, LAGS)))
+def recorded_response(identified: Identified) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies in Hz and omega_1/T_mot there, by the spectra of both (Welch), of which the means of the samples are
+    taken. Of a recording that crosses the gap it is not that of teeth in contact."""
+    drive, p = identified.drive, identified.p
+    T_mot = drive.torque(p.late_T).mean(axis=1) / p.g_T
+    omega_1 = 0.5 * (drive.omega_1[1:] + drive.omega_1[:-1])
+    rate, length = 1.0 / drive.T_s, min(WINDOW, len(drive))
+    f, cross = csd(T_mot, omega_1, rate, nperseg=length, detrend="linear")
+    _, power = welch(T_mot, rate, nperseg=length, detrend="linear")
+    return f, cross / power
+
+
+def ellipses(identified: Identified) -> list[Panel]:
+    """Within which 95 % of each pair of LABELS are, in % of the answer."""
+    p, answer, turn = identified.p, identified.found, np.linspace(0.0, 2.0 * np.pi, 181)
+    panels = []
+    for x, y in (("J_2", "C"), ("J_2", "phi_B"), ("C", "phi_B")):
+        pair = [answer.free.index(name) for name in (x, y)]
+        shares = 100.0 / np.array([getattr(p, name) for name in (x, y)])
+        covariance = answer.covariance[np.ix_(pair, pair)] * np.outer(shares, shares)
+        around = INSIDE * np.linalg.cholesky(covariance) @ np.array([np.cos(turn), np.sin(turn)])
+        half_x, half_y = ABOUT * INSIDE * np.sqrt(np.diag(covariance))
+        parts = [Curve(*around, color=VERMILION), Points(np.zeros(1), np.zeros(1), color=BLACK)]
+        axis = Axis(f"{LABELS[x]} off by, %", (-half_x, half_x))
+        panels.append(Panel(f"{LABELS[y]} off by, %", parts, bounds=(-half_y, half_y), x=axis))
+    return panels

@@ -1,65 +1,49 @@
-"""Free runs of an identified model over the end of its recording."""
+"""Free runs of an identified model, driven by the motor torque alone."""
 
-from dataclasses import dataclass
+from functools import cache
 
 import casadi as ca
 import numpy as np
 
-from ..recordings.measurement import Measurement
-from .drive_train import Parameters, gear_torque
-from .identify import UNMEASURED, WITHIN, Identified
-from .prediction import BURN_IN, filtered
-from .quality import SIMULATED, near_starts, segments
+from .buffered import Buffered
+from .drive_train import STEPS, Parameters, State, Vehicle, gear_torque, sample, tyre_torque
+from .prediction import Predictor
+
+SIMULATED = 0.5
+"""Length of a run in s."""
+
+RESULTS = ("omega_1", "omega_2", "T_gear", "T_load")
+"""What a run gives."""
 
 
-@dataclass(frozen=True, eq=False)
-class FreeRuns:
-    """Runs of `harness.identification.quality.SIMULATED`, each from the start that fits best, one behind the other
-    with NaN between them, each of shape (n,).
+def free_runs(predictor: Predictor, p: Parameters, states: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray]:
+    """Runs over SIMULATED, one behind the other to the end of the recording, each from the state of the filter.
 
-    Attributes:
-        time: in s, as recorded.
-        omega_1, omega_2: speed of motor and wheels in rad/s.
-        T_gear: in N.m.
-        error: simulated less recorded motor speed in rad/s.
-    """
-
-    time: np.ndarray
-    omega_1: np.ndarray
-    omega_2: np.ndarray
-    T_gear: np.ndarray
-    error: np.ndarray
-
-
-def free_runs(identified: Identified, recording: Measurement, window: tuple[float, float]) -> FreeRuns:
-    """
     Args:
-        recording: from which it was identified.
-        window: from and to when in s, as recorded, but for the first BURN_IN of the recording; the last run may
-            end later.
+        states: of the filter after each sample, shape (n, states).
+        first: sample with which the first run begins; its state is known by then.
+
+    Returns:
+        Samples of the recording that the runs have, shape (runs, n), and RESULTS there in rad/s and N.m, shape
+        (runs, n, 4).
     """
-    drive, p, time = identified.drive, identified.p, recording.time
-    begin, end = (round((t - time[0]) / drive.T_s) for t in window)
-    length = round(SIMULATED / drive.T_s)
-    span = -(-(end - begin) // length) * length
-    last = min(max(begin + span, round(BURN_IN / drive.T_s) + length), len(drive))
-    drift = UNMEASURED if recording.T_load is None else WITHIN
-    pieces = segments(drive.between(0, last), (), drift, max(last - span, 0))
-    states, recorded = pieces.free_runs(p, near_starts(pieces, filtered(drive, p, identified.noise)))
-    runs = []
-    for first, x, omega_1 in zip(pieces.firsts, states, recorded, strict=True):
-        at = slice(first + 1, first + 1 + pieces.length)
-        runs.append(np.array([time[at], x[:, 0], x[:, 1], _gear_torque(x, p), x[:, 0] - omega_1]))
-        runs.append(np.full((5, 1), np.nan))
-    return FreeRuns(*np.hstack(runs))
+    drive = predictor.drive
+    n = round(SIMULATED / drive.T_s)
+    torque = drive.torque(p.late_T)
+    once = np.array([*p, *predictor.behind, drive.T_s], dtype=float)
+    firsts = np.arange(max(first, 1), len(drive) - n + 1, n)
+    runs = [_run(n)(states[at - 1], torque[at : at + n].T, np.tile(once[:, None], (1, n)))[1].T.copy() for at in firsts]
+    return firsts[:, None] + np.arange(1, n + 1), np.array(runs)
 
 
-def end_of(recording: Measurement, stretch: float) -> tuple[float, float]:
-    """From and to when in s the last `stretch` s are, or all of it."""
-    return max(float(recording.time[-1]) - stretch, float(recording.time[0])), float(recording.time[-1])
-
-
-def _gear_torque(x: np.ndarray, p: Parameters) -> np.ndarray:
-    phi, dphi = ca.SX.sym("phi", len(x)), ca.SX.sym("dphi", len(x))
-    T_gear = ca.Function("T_gear", [phi, dphi], [gear_torque(phi, dphi, p)])
-    return np.asarray(T_gear(x[:, 2], x[:, 0] - x[:, 1])).ravel()
+@cache
+def _run(n: int) -> Buffered:
+    """The model alone over n samples."""
+    x, T_mot = ca.SX.sym("x", len(State._fields)), ca.SX.sym("T_mot", STEPS)
+    once = ca.SX.sym("once", len(Parameters._fields) + len(Vehicle._fields) + 1)
+    *values, J_v, d_low, omega_low, T_s = ca.vertsplit(once)
+    p, behind = Parameters._make(values), Vehicle(J_v, d_low, omega_low)
+    after = sample(State._make(ca.vertsplit(x)), T_mot, T_s, p, behind)
+    T_gear = gear_torque(after.phi, after.omega_1 - after.omega_2, p)
+    results = ca.vertcat(after.omega_1, after.omega_2, T_gear, -tyre_torque(after, behind))
+    return Buffered(ca.Function("sample", [x, T_mot, once], [ca.vertcat(*after), results]).mapaccum("run", n))

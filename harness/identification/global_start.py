@@ -1,12 +1,12 @@
 """Where the search begins: the likelihood has other valleys, so that several are looked into."""
 
+from collections.abc import Sequence
 from itertools import product
 from math import pi
 
 from .drive_train import Parameters
-from .maximum_likelihood import maximise
-from .model_inputs import Drive
-from .prediction import Noise, Predictor, filtered
+from .estimator import search
+from .prediction import Predictor
 
 INERTIAS = (0.5, 2.0, 8.0, 30.0)
 """J_2 over J_1: from bare wheels to a vehicle that does not slip."""
@@ -20,27 +20,27 @@ HALF_GAPS = (0.02, 0.1, 0.3)
 STRETCH = 3.0
 """Time in s of the recording by which they are compared."""
 
-PASSES = 6
+PASSES = 10
 """Into each valley."""
 
 
-def best_start(predictor: Predictor, drive: Drive, given: Parameters, noise: Noise) -> Parameters:
+def best_start(predictor: Predictor, given: Parameters, free: Sequence[str]) -> Parameters:
     """The end of a short search, the likeliest of those from what is given and from the best with each inertia.
 
     Args:
-        predictor: of the parameters that are searched, J_2, C and phi_B among them.
-        given: of which J_1 is taken as known.
-        noise: wide enough for the filter to follow what it does not model.
+        given: of which J_1 is taken as known; the filter must be wide enough to follow what it does not model.
+        free: of the parameters that are searched, J_2, C and phi_B among them.
     """
-    piece = drive.between(0, min(round(STRETCH / drive.T_s), len(drive)))
+    drive = predictor.drive
+    piece = predictor.of(drive.between(0, min(round(STRETCH / drive.T_s), len(drive))))
 
     def likeliest(ratio: float) -> Parameters:
         others = (
             given._replace(J_2=ratio * given.J_1, C=given.J_1 * (2.0 * pi * frequency) ** 2, phi_B=phi_B)
             for frequency, phi_B in product(FREQUENCIES, HALF_GAPS)
         )
-        return min(others, key=lambda p: filtered(piece, p, noise).cost)
+        return min(others, key=lambda p: piece.predicted(p).cost)
 
     starts = [given, *map(likeliest, INERTIAS)]
-    ends = [maximise(predictor, piece, start, noise, most=PASSES) for start in starts]
-    return min(ends, key=lambda end: end.innovations.cost).p
+    ends = [search(piece, start, free, given, most=PASSES) for start in starts]
+    return min(ends, key=lambda end: end.predicted.cost).p

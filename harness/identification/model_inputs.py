@@ -1,4 +1,4 @@
-"""Inputs of the model between the samples of a recording, and the motor speed that it is compared with."""
+"""A recording as the model takes it: the motor torque between samples, and what the model is compared with."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -8,65 +8,72 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
-from .drive_train import STEPS, Parameters
-from .time_shifts import integral, shifted
+from .drive_train import STEPS
 from .torque_loop import FittedLoop, fitted
 
 UNEVEN = 0.05
 """Share of a sample by which its time may be off."""
 
+LATEST = 0.006
+"""Time in s by which a torque may be early or late at most."""
+
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """Torques and motor speed, motor side.
+    """Signals of a drive, motor side, each of shape (n + 1,).
 
     Attributes:
         T_s: between samples in s.
-        omega_1: motor speed in rad/s, shape (n + 1,).
-        T_mot, T_load: recorded torques in N.m, means over each of the STEPS parts of a sample, shape (n, STEPS).
+        omega_1: motor speed in rad/s.
+        T_mot: recorded motor torque in N.m.
+        T_load: recorded load torque in N.m; None: it was not.
+        exact: where the motor torque is that of the demand, without noise; None: nowhere.
     """
 
     T_s: float
     omega_1: np.ndarray
     T_mot: np.ndarray
-    T_load: np.ndarray
+    T_load: np.ndarray | None
+    exact: np.ndarray | None = None
 
     def __len__(self) -> int:
-        return len(self.T_mot)
+        """Samples after the first."""
+        return len(self.omega_1) - 1
 
     def between(self, first: int, last: int) -> "Drive":
-        """Samples first to last, without last."""
-        at = slice(first, last)
-        return replace(self, omega_1=self.omega_1[first : last + 1], T_mot=self.T_mot[at], T_load=self.T_load[at])
+        """From one sample to another one."""
+        at = slice(first, last + 1)
+        load, exact = (None if of is None else of[at] for of in (self.T_load, self.exact))
+        return replace(self, omega_1=self.omega_1[at], T_mot=self.T_mot[at], T_load=load, exact=exact)
 
-    def acting(self, p: Parameters, first: int = 0, last: int | None = None) -> "Drive":
-        """Samples first to last, without last, with both torques when they acted."""
-        last = len(self) if last is None else last
-        piece = self.between(first, last)
-        if p.shifts == (0.0, 0.0):
-            return piece
-        lates = np.array(p.shifts) / self.T_s
-        T_mot, T_load = (shifted(of, first, last, late) for of, late in zip(self._integrals, lates, strict=True))
-        return replace(piece, T_mot=T_mot, T_load=T_load)
-
-    def d_acting(self, p: Parameters, first: int = 0, last: int | None = None) -> np.ndarray:
-        """Derivatives of both torques of `acting` by their shifts in N.m/s, shape (2 STEPS, samples)."""
-        last = len(self) if last is None else last
-        lates = np.array(p.shifts) / self.T_s
-        each = [shifted(of, first, last, late, derivative=1).T for of, late in zip(self._integrals, lates, strict=True)]
-        return np.vstack(each) / self.T_s
+    def torque(self, late: float) -> np.ndarray:
+        """The motor torque when it acted, where it was recorded so many seconds late: means over the STEPS parts of
+        each sample of the cubic spline through the recorded ones, shape (n, STEPS). A straight line would bias J_2 by
+        .055 % at 2 ms."""
+        if late not in self._torques:
+            if len(self._torques) > 1:  # a search moves one delay at a time
+                self._torques.clear()
+            edges = np.arange(STEPS * len(self) + 1) / STEPS + late / self.T_s
+            self._torques[late] = np.diff(self._integral(edges)).reshape(-1, STEPS) * STEPS
+        return self._torques[late]
 
     @cached_property
-    def _integrals(self) -> tuple[BSpline, BSpline]:
-        return integral(self.T_mot, self.T_s), integral(self.T_load, self.T_s)
+    def _torques(self) -> dict[float, np.ndarray]:
+        """Those of the last delays."""
+        return {}
+
+    @cached_property
+    def _integral(self) -> BSpline:
+        """Over the time in samples; LATEST beyond both ends the torque is held."""
+        beyond = int(np.ceil(LATEST / self.T_s))
+        held = np.pad(self.T_mot, beyond, mode="edge")
+        return make_interp_spline(np.arange(-beyond, len(self) + beyond + 1), held, k=3).antiderivative()
 
 
-def model_inputs(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
-    """The recording as the model takes it, and what motor control makes of the demand if that was recorded.
+def drive_of(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
+    """The recording as the model takes it, and motor control if its demand was recorded.
 
-    The motor torque is that of the torque loop where the demand is known and explains it, so that it has no noise;
-    else, as the load torque, the cubic spline through its samples. A straight line between them would bias J_2 by
-    -.055 % at 2 ms. A load torque that was not recorded is 0.
+    Where the torque is what motor control makes of the demand, it is taken from there, so that it has no noise.
 
     Raises:
         RecordingError: the samples are not evenly spaced.
@@ -82,16 +89,7 @@ def model_inputs(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
             "at which the samples were taken and not the one at which they arrived (--column time=NAME)"
         )
     loop = None if recording.T_ref is None else fitted(recording.T_ref, recording.T_mot, T_s)
-    if loop is None or recording.T_ref is None or not loop.answers:
-        T_mot = parts(recording.T_mot, T_s)
-    else:
-        T_mot = loop.loop.means(recording.T_ref, T_s, STEPS)[:-1]
-    T_load = np.zeros_like(T_mot) if recording.T_load is None else parts(recording.T_load, T_s)
-    return Drive(T_s, recording.omega_1, T_mot, T_load), loop
-
-
-def parts(values: np.ndarray, T_s: float) -> np.ndarray:
-    """Means of a signal of shape (n + 1,) over each part of its samples, by a cubic spline, shape (n, STEPS)."""
-    n = len(values) - 1
-    integral = make_interp_spline(np.arange(n + 1), values, k=3).antiderivative()
-    return np.diff(integral(np.arange(STEPS * n + 1) / STEPS)).reshape(n, STEPS) * STEPS
+    if loop is None or not loop.answers:
+        return Drive(T_s, recording.omega_1, recording.T_mot, recording.T_load), loop
+    T_mot = np.where(loop.met, loop.torque, recording.T_mot)
+    return Drive(T_s, recording.omega_1, T_mot, recording.T_load, loop.met), loop

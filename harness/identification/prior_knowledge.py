@@ -6,7 +6,7 @@ from typing import Any
 from ..base.argument_kinds import require_each, require_kind
 from ..design.design_weights import records
 from ..recordings.measurement import Measurement
-from .drive_train import Parameters
+from .drive_train import Parameters, Vehicle
 from .identify import Identified, Log
 from .identify import identify as identified_from
 
@@ -36,6 +36,14 @@ def identify(
     """
     require_kind("recording", recording, Measurement, "a Measurement, as read_measurement reads it")
     require_each("more", more, str, "names of parameters")
-    plant, motor, _ = records(vehicle or {})
-    start = Parameters(plant.J_1, plant.J_2, plant.C, 0.0, plant.phi_B)
-    return identified_from(recording, start, motor.tau, plant.m * plant.r**2 / plant.i**2, more, log)
+    _, motor, _ = records(vehicle or {})
+    return identified_from(recording, *known(vehicle or {}), motor.tau, more, log)
+
+
+def known(vehicle: Mapping[str, Any]) -> tuple[Parameters, Vehicle]:
+    """With what the search begins, and what the tyre carries, by the entries of a vehicle file."""
+    plant, _, _ = records(vehicle)
+    ratio = plant.r / plant.i
+    behind = Vehicle(plant.m * ratio**2, plant.d_low * ratio**2, plant.v_low / ratio)
+    tyre = {"c_t": plant.c_slip / plant.sigma_s * ratio**2, "sigma_t": plant.sigma_s / ratio}
+    return Parameters(plant.J_1, plant.J_2, plant.C, 0.0, plant.phi_B, **tyre), behind

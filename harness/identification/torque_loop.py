@@ -13,10 +13,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import astuple, dataclass, fields
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
 from ..recordings.delays import EARLIEST, LATEST
 from ..recordings.source import RecordingError
+from .noise import white_noise
 
 SQRT_2 = 2.0**0.5
 
@@ -31,6 +33,14 @@ ANSWERS = 0.9
 
 UNKNOWN = 0.2
 """Time in s at the beginning that is not fitted: what was demanded before the recording may still act."""
+
+OUTLYING = 3.0
+"""Noise of the recorded torque beyond which a miss counts less: a demand that was logged a tick early or late misses by
+half of its step, 30 times the noise."""
+
+AROUND, MET = 0.02, 1.6
+"""Time in s over which misses are averaged, and their rms over the noise of the torque up to which the demand explains
+it: of ten samples of noise one in 250 is beyond."""
 
 
 @dataclass(frozen=True)
@@ -62,21 +72,6 @@ class TorqueLoop:
         """
         return self.gain * self._sum(self._answer, T_ref, T_s) + self.offset
 
-    def means(self, T_ref: np.ndarray, T_s: float, parts: int) -> np.ndarray:
-        """Its means over each of so many equal parts of every sample.
-
-        Returns:
-            In N.m, shape (n, parts).
-        """
-        width = T_s / parts
-
-        def mean(t: np.ndarray) -> np.ndarray:
-            """Of the answer, over what ends at t."""
-            return (self._integral(t) - self._integral(t - width)) / width
-
-        each = [self._sum(mean, T_ref, T_s, ahead=(k + 1) * width) for k in range(parts)]
-        return self.gain * np.column_stack(each) + self.offset
-
     def derivatives(self, T_ref: np.ndarray, T_s: float) -> np.ndarray:
         """Of `torque` by tau, gain, offset and delay, shape (n, 4)."""
         T = self._sum(self._answer, T_ref, T_s)
@@ -97,22 +92,15 @@ class TorqueLoop:
         y = self._y(t)
         return SQRT_2 / self.tau * np.exp(-y) * np.sin(y)
 
-    def _integral(self, t: np.ndarray) -> np.ndarray:
-        """Of s, since the step."""
-        y = self._y(t)
-        return SQRT_2 * self.tau * (y - 1.0 + np.exp(-y) * np.cos(y))
-
-    def _sum(
-        self, answer: Callable[[np.ndarray], np.ndarray], T_ref: np.ndarray, T_s: float, ahead: float = 0.0
-    ) -> np.ndarray:
-        """The answers to all steps of the demand, so many seconds ahead of each sample.
+    def _sum(self, answer: Callable[[np.ndarray], np.ndarray], T_ref: np.ndarray, T_s: float) -> np.ndarray:
+        """The answers to all steps of the demand.
 
         Args:
             answer: to a step of 1; 0 before it, and constant a sample after SETTLED.
         """
-        shift = (self.delay - ahead) / T_s
+        shift = self.delay / T_s
         first, last = int(np.floor(shift)), int(np.ceil(shift + SETTLED * self.tau / T_s)) + 1
-        pulse = np.diff(answer(np.arange(first, last + 1) * T_s + ahead - self.delay))
+        pulse = np.diff(answer(np.arange(first, last + 1) * T_s - self.delay))
         known = np.clip(np.arange(-last, len(T_ref) - first - 1), 0, len(T_ref) - 1)
         return np.convolve(T_ref[known], pulse, mode="valid")
 
@@ -129,12 +117,16 @@ class FittedLoop:
         deviations: standard deviation of each of its parameters, in its unit.
         noise: of the recorded torque, rms, in N.m.
         explained: share of the power of the recorded torque.
+        torque: of the loop at each sample in N.m, as it is recorded, without noise.
+        met: samples at which that is the recorded one, less noise.
     """
 
     loop: TorqueLoop
     deviations: Mapping[str, float]
     noise: float
     explained: float
+    torque: np.ndarray
+    met: np.ndarray
 
     @property
     def answers(self) -> bool:
@@ -166,21 +158,25 @@ def fitted(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float) -> FittedLoop:
 
     lower, upper = (SHORTEST, -np.inf, -np.inf, EARLIEST), (LONGEST, np.inf, np.inf, LATEST)
     start = TorqueLoop(START, delay=_nearest_delay(T_ref, T_mot, T_s, at))
+    noise = max(white_noise(T_mot), 1e-6 * float(np.ptp(T)))
     found = least_squares(
         misses,
         astuple(start),
         derivatives,  # pyright: ignore[reportArgumentType]
         (lower, upper),
         x_scale="jac",
+        loss="soft_l1",
+        f_scale=OUTLYING * noise,
     )
-    variance = 2.0 * found.cost / (len(T) - len(PARAMETERS))
-    deviations = np.sqrt(variance) * np.linalg.norm(np.linalg.pinv(found.jac), axis=1)
-    return FittedLoop(
-        TorqueLoop(*map(float, found.x)),
-        dict(zip(PARAMETERS, map(float, deviations), strict=True)),
-        float(np.sqrt(variance)),
-        1.0 - float(np.var(found.fun) / np.var(T)),
-    )
+    loop = TorqueLoop(*map(float, found.x))
+    torque = loop.torque(T_ref, T_s)
+    off = (T_mot - torque) ** 2
+    met = uniform_filter1d(off, max(round(AROUND / T_s), 3)) < (MET * noise) ** 2
+    met[: at.start] = False
+    rms = float(np.sqrt(off[at][met[at]].mean() if met[at].any() else off[at].mean()))
+    deviations = rms * np.linalg.norm(np.linalg.pinv(loop.derivatives(T_ref, T_s)[at]), axis=1)
+    deviations = dict(zip(PARAMETERS, map(float, deviations), strict=True))
+    return FittedLoop(loop, deviations, rms, 1.0 - float(off[at].mean() / np.var(T)), torque, met)
 
 
 def _nearest_delay(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float, at: slice) -> float:

@@ -1,41 +1,51 @@
-"""What the controller's model needs of an identified car.
+"""What the vehicle file needs of an identified car: J_2 and C of the design model.
 
-Its model is that of the paper: J_1, C, the gap, and a load torque that changes slowly. Neither result of the
-identification is that as it stands. With load torque J_2 is the wheels alone, next to nothing in the vehicle, and C
-does not have the tyre in it; without, J_2 is wheels and vehicle. What both have in common is how the car answers on its
-own, about the resonance: the two masses that answer so give C. J_2 is left as the vehicle file has it; the gains depend
-on J_2 + m r^2/i^2, and with J_2 as identified the estimate of the wheels is lost.
+Where the model explains the recording, they are what was found. Where it does not, J_2 is what predicts best, of the
+validation vehicle, whose wheels hang on mounts and bushings, a tenth of the design's; with that the controller's
+estimate of the wheels is lost. J_2 then stays as it was, and C follows from the frequency at which the car answers:
+a detailed car of that file swings there (`fmus/building/one_car.py`).
 """
 
-import numpy as np
-from scipy.optimize import least_squares
+from functools import cache
+from math import pi
 
+from scipy.optimize import brentq
+
+from ...fmus.building.one_car import DESIGN, DETAILED
+from ...fmus.building.oscillation import oscillation
+from .diagnostics import lacking
 from .drive_train import Parameters
-from .drive_train_response import Tyre, response
-
-ABOUT = np.linspace(0.5, 1.5, 41)
-"""Frequencies over that of the resonance at which the answers are compared."""
+from .drive_train_response import PEAK, resonance, rolling_tyre
+from .identify import WITH_LOAD, Identified
 
 
-def equivalent(p: Parameters, behind: Tyre | None, peak: float) -> Parameters:
-    """The two masses that answer as the car does.
+@cache
+def detailed_over_design() -> float:
+    """Frequency of the validation vehicle over that of the design model, of any car."""
+    detailed, design = (oscillation(plant, plant.Parameters()).frequency for plant in (DETAILED, DESIGN))
+    return detailed / design
+
+
+def is_explained(identified: Identified) -> bool:
+    """Whether the parameters are those of the car, and not of what predicts best."""
+    return identified.name == WITH_LOAD and not lacking(identified.found)
+
+
+def equivalent(identified: Identified, p: Parameters) -> Parameters:
+    """The car of the vehicle file in the design model.
 
     Args:
-        p, behind: the car as identified.
-        peak: its resonance in Hz.
+        p: as identified, or near.
     """
-    if behind is None:
+    if is_explained(identified):
         return p
-    f = peak * ABOUT
-    car = response(p, f, behind)
+    file = identified.found.centre._replace(J_1=p.J_1, phi_B=p.phi_B, d=0.0)
+    tyre = rolling_tyre(file, identified.predictor.behind, identified.speed)
+    peak = resonance(p, identified.tyre_of(p))
+    peak = peak / detailed_over_design() if lacking(identified.found) else peak
 
-    def missed(x: np.ndarray) -> np.ndarray:
-        J_2, C, d = np.exp(x)
-        off = response(p._replace(J_2=J_2, C=C, d=d), f) / car - 1.0
-        return np.concatenate([off.real, off.imag])
+    def off(C: float) -> float:
+        return resonance(file._replace(C=C), tyre) - peak
 
-    C = p.J_1 * (2.0 * np.pi * peak) ** 2
-    with np.errstate(over="ignore", invalid="ignore"):  # a step into infinity is taken back and made smaller
-        found = least_squares(missed, np.log([behind.J_v, C, 0.1 * C / (2.0 * np.pi * peak)]))
-    J_2, C, d = map(float, np.exp(found.x))
-    return p._replace(J_2=J_2, C=C, d=d)
+    C = brentq(off, *(p.J_1 * (2.0 * pi * f) ** 2 for f in (0.8 * PEAK[0], 1.2 * PEAK[1])))
+    return file._replace(C=float(C))  # pyright: ignore[reportArgumentType]

@@ -1,0 +1,224 @@
+"""The most likely parameters, with what is known of them before: scoring steps with a trust that adapts (Levenberg,
+Marquardt), within physical bounds. Positive parameters are searched by their logarithm."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.stats import norm
+
+from .drive_train import DELAYS, Parameters
+from .model_inputs import LATEST
+from .prediction import CHANNELS, Noise, Predicted, Predictor
+
+Z_95 = float(norm.ppf(0.975))
+"""Standard deviations within which 95 % of what is normal are."""
+
+
+class Prior(NamedTuple):
+    """What is known of a parameter before a recording is seen.
+
+    Attributes:
+        deviation: standard deviation, in its unit; of a positive parameter that of its logarithm.
+        source: of that number.
+        positive: whether it is; else it is searched as it is.
+        centre: the most likely value; None: that of the start.
+    """
+
+    deviation: float
+    source: str
+    positive: bool = True
+    centre: float | None = None
+
+
+PRIORS: Mapping[str, Prior] = {
+    "J_1": Prior(0.5, "data sheet of the motor"),
+    "J_2": Prior(2.0, "from bare wheels to a vehicle that does not slip"),
+    "C": Prior(1.0, "cars shuffle at 2 to 12 Hz"),
+    "d": Prior(1.0, "damping ratios of drive trains are below .3", positive=False),
+    "phi_B": Prior(2.0, "from a new gear to a worn one"),
+    "g_T": Prior(0.05, "torque estimates are right to 5 %", centre=1.0),
+    "g_L": Prior(0.05, "measurement wheels are right to some per cent", centre=1.0),
+    "late_T": Prior(2e-3, "tasks and buses of loggers are some ms apart", positive=False, centre=0.0),
+    "late_L": Prior(2e-3, "tasks and buses of loggers are some ms apart", positive=False, centre=0.0),
+    "c_t": Prior(1.5, "tyres of cars"),
+    "sigma_t": Prior(1.5, "tyres of cars"),
+    "lack_1": Prior(4.0, "from the rounding of the filter to a wrong model"),
+    "lack_phi": Prior(4.0, "from the rounding of the filter to a wrong model"),
+    "lack_L": Prior(4.0, "from the rounding of the filter to a wrong model"),
+}
+
+LEAST = {"d": 0.0, "lack_1": 1e-3, "lack_phi": 1e-5, "lack_L": 0.01}
+"""Least values, in their units: no damper drives, and below a hundredth of its noise nothing of a channel is told."""
+
+UNIT = {"d": 0.1, **dict.fromkeys(DELAYS, 1e-3)}
+"""Of what is searched as it is."""
+
+DIFFERENCE = 1e-4
+"""Step of the derivatives, of what is searched: about the least standard deviation."""
+
+HESITATES = 5.0
+"""Derivative over its 99 % quantile beyond which it is cut off: where the filter hesitates between flanks, single
+samples have thousands of times the usual one, and would be taken for knowledge."""
+
+LARGEST = 0.7
+"""Step of the search: a factor of 2."""
+
+ENOUGH = 0.02
+"""Gain in likelihood, and step in standard deviations, at which the search has ended: a tenth of an interval is .2."""
+
+WINDOW = 0.1
+"""Time in s of a window of the sandwich: beyond it innovations of the validation vehicle no longer go together."""
+
+UNTOLD = 0.5
+"""Standard deviation over that of before from which on the recording has told nothing of a parameter."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Where a search has ended.
+
+    Attributes:
+        p: the parameters.
+        free: names of those that were searched.
+        centre: what was expected before.
+        predicted: with them.
+        scores: derivatives of the cost by what is searched, shape (samples, free).
+        information: Fisher's, of each channel, shape (2, free, free).
+        noise: of the sensors.
+        T_s: between samples in s.
+        passes: through the recording.
+    """
+
+    p: Parameters
+    free: tuple[str, ...]
+    centre: Parameters
+    predicted: Predicted
+    scores: np.ndarray
+    information: np.ndarray
+    noise: Noise
+    T_s: float
+    passes: int
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        """Derivative of each free parameter by what is searched."""
+        return scales(self.p, self.free)
+
+    @cached_property
+    def covariance(self) -> np.ndarray:
+        """Of the free parameters, in their units: that of the likelihood, each deviation as much larger as the scores
+        of windows scatter more than noise alone (sandwich)."""
+        inverse = np.linalg.inv(self.information.sum(axis=0) + np.diag(before(self.free)))
+        windows = max(round(len(self.scores) * self.T_s / WINDOW), 2)
+        each = np.array([part.sum(axis=0) for part in np.array_split(self.scores, windows)])
+        each -= each.mean(axis=0)
+        sandwich = inverse @ (each.T @ each) @ inverse * windows / (windows - 1)
+        wider = np.sqrt(np.maximum(np.diag(sandwich) / np.diag(inverse), 1.0)) * self.scale
+        return inverse * np.outer(wider, wider)
+
+    @cached_property
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation of each free parameter, in its unit."""
+        return dict(zip(self.free, map(float, np.sqrt(np.diag(self.covariance))), strict=True))
+
+    def told_by(self, name: str) -> str:
+        """The channel that alone tells most of a parameter; "" where the recording tells nothing of it."""
+        k, prior = self.free.index(name), np.diag(before(self.free))
+        if self.deviations[name] > UNTOLD * PRIORS[name].deviation * self._unit(name):
+            return ""
+        alone = [np.linalg.inv(of + prior)[k, k] for of in self.information]
+        return CHANNELS[int(np.argmin(alone))]
+
+    def _unit(self, name: str) -> float:
+        return getattr(self.p, name) if PRIORS[name].positive else 1.0
+
+
+def scales(p: Parameters, free: Sequence[str]) -> np.ndarray:
+    return np.array([UNIT.get(name) or getattr(p, name) for name in free])
+
+
+def before(free: Sequence[str]) -> np.ndarray:
+    """Information about what is searched before a recording is seen."""
+    return np.array([(UNIT.get(name, 1.0) / PRIORS[name].deviation) ** 2 for name in free])
+
+
+def surprise(p: Parameters, free: Sequence[str], centre: Parameters) -> np.ndarray:
+    """How far what is searched is from what was expected."""
+    off = []
+    for name in free:
+        value, prior = getattr(p, name), PRIORS[name]
+        expected = getattr(centre, name) if prior.centre is None else prior.centre
+        off.append(np.log(value / expected) if prior.positive else (value - expected) / UNIT[name])
+    return np.array(off)
+
+
+def moved(p: Parameters, free: Sequence[str], by: np.ndarray) -> Parameters:
+    """A step, within bounds."""
+    values = {
+        name: getattr(p, name) * float(np.exp(step)) if PRIORS[name].positive else getattr(p, name) + UNIT[name] * step
+        for name, step in zip(free, by, strict=True)
+    }
+    values |= {name: float(np.clip(values[name], -LATEST, LATEST)) for name in DELAYS if name in values}
+    values |= {name: max(values[name], least) for name, least in LEAST.items() if name in values}
+    return p._replace(**values)
+
+
+def _without_hesitation(derivatives: np.ndarray) -> np.ndarray:
+    most = HESITATES * np.quantile(np.abs(derivatives), 0.99, axis=-1, keepdims=True)
+    return np.clip(derivatives, -most, most)
+
+
+def search(predictor: Predictor, start: Parameters, free: Sequence[str], centre: Parameters, most: int = 40) -> Found:
+    """
+    Args:
+        free: names of the parameters that are searched.
+        centre: what is expected before.
+        most: steps.
+    """
+    free, at = tuple(free), predictor.start(start)
+    weight, counted = before(free), predictor.counted
+
+    def cost(p: Parameters, predicted: Predicted) -> float:
+        return predicted.cost + 0.5 * float(weight @ surprise(p, free, centre) ** 2)
+
+    def found(p: Parameters, predicted: Predicted, passes: int) -> Found:
+        """With the derivatives there."""
+        d_size, d_log = np.empty((2, 2, len(free), *predicted.size[:, counted].shape[1:]))
+        for k in range(len(free)):
+            moved_on = predictor.predicted(moved(p, free, DIFFERENCE * np.eye(len(free))[k]), at)
+            d_size[:, k] = (moved_on.size - predicted.size)[:, counted] / DIFFERENCE
+            d_log[:, k] = (moved_on.log_S - predicted.log_S)[:, counted] / DIFFERENCE
+        d_size, d_log = _without_hesitation(d_size), _without_hesitation(d_log)
+        scores = np.einsum("ckn,cn->nk", d_size, predicted.size[:, counted]) + 0.5 * d_log.sum(axis=0).T
+        # a half of what the variance tells is in d_size
+        information = np.array([a @ a.T + 0.25 * b @ b.T for a, b in zip(d_size, d_log, strict=True)])
+        return Found(p, free, centre, predicted, scores, information, predictor.noise, predictor.drive.T_s, passes)
+
+    predicted = predictor.predicted(start, at)
+    best, lowest, trust = found(start, predicted, 1), cost(start, predicted), 1e-2
+    for passes in range(2, most + 1):
+        g = best.scores.sum(axis=0) + weight * surprise(best.p, free, centre)
+        # what is at its bound stays there if the recording would have it beyond
+        bounded = [getattr(best.p, name) <= LEAST.get(name, -np.inf) for name in free]
+        inside = ~(np.array(bounded) & (g > 0.0))
+        H = best.information.sum(axis=0) + np.diag(weight)
+        part = H[np.ix_(inside, inside)]
+        step = np.zeros(len(free))
+        step[inside] = -np.linalg.solve(part + trust * np.diag(np.diag(part)), g[inside])
+        step = np.clip(step, -LARGEST, LARGEST)
+        if np.sqrt(step @ H @ step / len(free)) < ENOUGH:
+            break
+        p = moved(best.p, free, step)
+        predicted = predictor.predicted(p, at)
+        now = cost(p, predicted)
+        if np.isfinite(now) and now < lowest:
+            gain, lowest, trust = lowest - now, now, max(trust / 10.0, 1e-9)
+            best = found(p, predicted, passes)
+            if gain < ENOUGH:
+                break
+        else:
+            trust = max(10.0 * trust, 1.0)
+    return best
