@@ -95,7 +95,10 @@ def drawn(count: int, seed: int) -> tuple[list[Car], list[Loop]]:
         late = rng.uniform(0.0, 0.001, 3) * (k % 2)
         order = ORDERS[rng.integers(3)] if k % 2 else ORDERS[0]
         amplitude, clock = float(rng.choice([15.0, 30.0, 50.0])), float(rng.choice([0.03, 0.04, 0.05]))
-        loops.append(Loop(order, *map(float, late), amplitude, clock=clock, gain=float(rng.normal(1.0, 0.01))))
+        late_omega, late_T_mot, late_T_load = map(float, late)
+        loops.append(
+            Loop(order, late_omega, late_T_mot, late_T_load, amplitude, clock=clock, gain=float(rng.normal(1.0, 0.01)))
+        )
     return cars, loops
 
 

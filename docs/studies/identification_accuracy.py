@@ -1,4 +1,4 @@
-"""What an identification is worth: accuracy, intervals, starts, bad data and redesigned controllers, by the dozen.
+"""What an identification is worth: accuracy, intervals, starts and bad data, by the dozen.
 
 Each case drives the car, writes the recording as its sensors would, reads it and identifies it, as a user does.
 """
@@ -16,11 +16,9 @@ import numpy as np
 from docs.studies.foreign_loop import drawn, driven, logged
 from driveline.harness.base.csv_file import write_csv
 from driveline.harness.design.design import design
-from driveline.harness.design.design_trials import controller_parameters, loop_records, settled
+from driveline.harness.design.design_trials import controller_parameters, settled
 from driveline.harness.design.design_weights import MOTOR, PLANT
-from driveline.harness.design.kalman import DesignError
-from driveline.harness.design.redesign import REDESIGN_MANOEUVRES, softened
-from driveline.harness.design.uncertainty_box import Deviation, changed
+from driveline.harness.design.redesign import REDESIGN_MANOEUVRES
 from driveline.harness.identification.car_file import identified_car
 from driveline.harness.identification.drive_train_response import response
 from driveline.harness.identification.estimator import Found, before, search
@@ -31,7 +29,6 @@ from driveline.harness.identification.prior_knowledge import identify, known
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.prbs import TEST_DRIVE, TEST_SPEED, binary_torque
 from driveline.harness.recordings.measurement import Measurement, read_measurement
-from driveline.harness.recordings.source import RecordingError
 from driveline.harness.simulation.excitation_drive import MeasurementWheels, sensed
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.margins.linear_plant import linear_plant as linear
@@ -279,41 +276,3 @@ def true_response() -> np.ndarray:
 def true_peak() -> float:
     """Frequency in Hz at which that is largest."""
     return float(RESPONSE[int(np.argmax(abs(true_response())))])
-
-
-@dataclass(frozen=True)
-class Redesigned:
-    """A car drawn at random with the default gains and with those of its identification.
-
-    Attributes:
-        plant, number: of the draw.
-        before, after: settling time in s and overshoot (1) by manoeuvre.
-        found: C, phi_B and tau that the controller assumes.
-        problem: why there is no controller.
-    """
-
-    plant: str
-    number: int
-    before: Mapping[str, tuple[float, float]]
-    after: Mapping[str, tuple[float, float]]
-    found: Mapping[str, float]
-    problem: str = ""
-
-
-def redesigned(case: tuple[str, int, Deviation, int]) -> Redesigned:
-    """A draw of the box: plant, number, deviation, seed of the noise. Identified with load torque."""
-    plant, number, deviation, seed = case
-    blocks = {place: record()._asdict() for place, record in loop_records(plant).items()}
-    true = changed(blocks, deviation)
-    try:
-        assumed = identified_car(identify(recording(plant, seed, true)))
-    except RecordingError as reason:
-        return Redesigned(plant, number, {}, {}, {}, str(reason))
-    before_it = {name: settled(plant, name, true, seed) for name in REDESIGN_MANOEUVRES}
-    try:
-        gains = design(assumed, weights=softened(assumed, {}))
-    except DesignError as reason:
-        return Redesigned(plant, number, before_it, {}, assumed, str(reason))
-    controller = controller_parameters({**assumed, **gains}, plant)
-    after = {name: settled(plant, name, true | controller, seed) for name in REDESIGN_MANOEUVRES}
-    return Redesigned(plant, number, before_it, after, assumed)

@@ -1,7 +1,7 @@
 """Identifies the drive train from a recording of a test drive: the inertia of the wheels J_2, the stiffness C and half
 the gap phi_B, each with its 95 % interval, the lag of motor control where the torque demand was recorded, and
-structural damping where the data ask for it. Written are the vehicle file, which other commands take as --vehicle,
-beside it all that was found (NAME_identified.json), what made it (NAME.json) and four figures.
+damping, tyre and the time by which each channel is recorded late. Written are the vehicle file, which other commands
+take as --vehicle, beside it all that was found (NAME_identified.json), what made it (NAME.json) and two figures.
 
 The recording is a file with the columns
 
@@ -9,7 +9,7 @@ The recording is a file with the columns
 
 under any name that docs/recordings.md lists. It finds more with {more}. Without load torque J_2 carries the vehicle,
 and the result is called effective. The fit is judged on the last quarter, with parameters found without it. What is
-likely to be wrong with the recording, or is not determined by it, is said. A stiffness that is known to no better than
+likely to be wrong with the recording, or is not told by it, is said. A stiffness that is known to no better than
 +- 50 % makes no vehicle file, and a gap that is known no better stays as it was; docs/identification.md tells more.
 
 examples:

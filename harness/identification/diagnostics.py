@@ -105,7 +105,9 @@ def _skews(p: Parameters, off: dict[str, float]) -> Iterator[str]:
         if abs(late) > max(SKEWED, SURELY * off.get(name, np.inf))
     }
     allowed = "which is allowed for here; other commands take the channels as recorded"
-    if len(named) == 2 and abs(p.late_T - p.late_L) <= max(TOGETHER, Z_95 * float(np.hypot(*[off[n] for n in named]))):
+    if len(named) == 2 and abs(p.late_T - p.late_L) <= max(
+        TOGETHER, Z_95 * float(np.linalg.norm([off[n] for n in named]))
+    ):
         # both torques alike: weighed by how well each is known
         weights = [1.0 / off[name] ** 2 for name in named]
         late = -float(np.average(list(named.values()), weights=weights))

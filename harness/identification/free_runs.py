@@ -42,7 +42,7 @@ def _run(n: int) -> Buffered:
     x, T_mot = ca.SX.sym("x", len(State._fields)), ca.SX.sym("T_mot", STEPS)
     once = ca.SX.sym("once", len(Parameters._fields) + len(Vehicle._fields) + 1)
     *values, J_v, d_low, omega_low, T_s = ca.vertsplit(once)
-    p, behind = Parameters._make(values), Vehicle(J_v, d_low, omega_low)
+    p, behind = Parameters._make(values), Vehicle._make((J_v, d_low, omega_low))
     after = sample(State._make(ca.vertsplit(x)), T_mot, T_s, p, behind)
     T_gear = gear_torque(after.phi, after.omega_1 - after.omega_2, p)
     results = ca.vertcat(after.omega_1, after.omega_2, T_gear, -tyre_torque(after, behind))

@@ -8,7 +8,7 @@ parameters and noise they are white and of size 1 (L. Ljung, System Identificati
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -174,11 +174,11 @@ class _Filter:
         T_mot, recorded = ca.SX.sym("T_mot", STEPS), ca.SX.sym("recorded", 2)
         once = ca.SX.sym("once", len(Parameters._fields) + len(Noise._fields) + len(Vehicle._fields) + 1)
         *values, r_1, r_T, r_L, J_v, d_low, omega_low, T_s = ca.vertsplit(once)
-        p, behind = Parameters._make(values), Vehicle(J_v, d_low, omega_low)
+        p, behind = Parameters._make(values), Vehicle._make((J_v, d_low, omega_low))
         before = State._make(ca.vertsplit(x))
         ahead = ca.vertcat(*sample(before, T_mot, T_s, p, behind))
         F = ca.jacobian(ahead, x)
-        at = State._make(range(STATES))
+        at: Any = State._make(range(STATES))
         G = ca.SX(F[:, at.o_T])  # the noise of the torque acts over the sample as its offset does, but is gone then
         G[at.o_T] = 0.0
         P = ca.SX(STATES, STATES)

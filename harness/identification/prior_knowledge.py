@@ -27,7 +27,7 @@ def identify(
     Args:
         vehicle: entries of the vehicle file of the car as it is known, with which the search begins; what it does not
             name is that of the default car.
-        more: names of parameters that are to be identified too, of J_1, d and g_T.
+        more: names of parameters that are to be identified too; J_1.
         log: gets a line for each step.
 
     Raises:

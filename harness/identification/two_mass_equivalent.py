@@ -47,5 +47,6 @@ def equivalent(identified: Identified, p: Parameters) -> Parameters:
     def off(C: float) -> float:
         return resonance(file._replace(C=C), tyre) - peak
 
-    C = brentq(off, *(p.J_1 * (2.0 * pi * f) ** 2 for f in (0.8 * PEAK[0], 1.2 * PEAK[1])))
+    softest, stiffest = (p.J_1 * (2.0 * pi * f) ** 2 for f in (0.8 * PEAK[0], 1.2 * PEAK[1]))
+    C = brentq(off, softest, stiffest)
     return file._replace(C=float(C))  # pyright: ignore[reportArgumentType]

@@ -45,26 +45,6 @@ def test_the_torque_solves_the_equation() -> None:
     np.testing.assert_allclose(LOOP.torque(T_ref, T_S), LOOP.gain * np.array(found) + LOOP.offset, atol=1e-7)
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.0007, -0.0013, 0.006])
-def test_the_means_are_those_of_the_torque_between_the_samples(delay: float) -> None:
-    parts, fine = 4, 200
-    loop = replace(LOOP, delay=delay)
-    between = np.column_stack([
-        replace(loop, delay=delay - (k + 0.5) * T_S / fine).torque(DEMAND[:100], T_S) for k in range(fine)
-    ])  # fmt: skip
-    expected = between.reshape(100, parts, fine // parts).mean(axis=2)[:-1]
-    np.testing.assert_allclose(loop.means(DEMAND[:100], T_S, parts)[:-1], expected, atol=1e-3)
-
-
-def test_the_parts_of_a_sample_have_its_mean() -> None:
-    np.testing.assert_allclose(LOOP.means(DEMAND, T_S, 4).mean(axis=1), LOOP.means(DEMAND, T_S, 1)[:, 0], rtol=1e-12)
-
-
-def test_a_steady_demand_is_met() -> None:
-    T = TorqueLoop(0.003, 1.02, 1.5, 0.01).means(np.full(50, 20.0), T_S, 4)
-    np.testing.assert_allclose(T, 1.02 * 20.0 + 1.5, rtol=1e-12)
-
-
 def test_the_derivatives_are_those_of_the_torque() -> None:
     found = LOOP.derivatives(DEMAND, T_S)
     for k, name in enumerate(PARAMETERS):
@@ -97,6 +77,19 @@ def test_what_was_demanded_before_the_recording_does_not_matter() -> None:
     T_mot = noisy(LOOP, 1)
     require_found(fitted(DEMAND[:-7], T_mot[:-7], T_S), LOOP)
     require_found(fitted(DEMAND[1003:], T_mot[1003:], T_S), LOOP)
+
+
+def test_steps_of_the_demand_that_are_logged_a_tick_off_move_nothing_and_are_not_met() -> None:
+    """Every tenth by a sample, as by a clock that is rounded."""
+    T_mot, early = noisy(LOOP, 1), DEMAND.copy()
+    steps = np.flatnonzero(np.diff(DEMAND))[::10]
+    early[steps] = DEMAND[steps + 1]
+    found = fitted(early, T_mot, T_S)
+    assert abs(found.loop.tau - LOOP.tau) < 4.0 * found.deviations["tau"]
+    assert abs(found.loop.delay - LOOP.delay) < 2e-5
+    assert found.noise == pytest.approx(NOISE, rel=0.05)
+    assert not any(found.met[step : step + 5].any() for step in steps)
+    assert found.met[steps[0] :].mean() > 0.9 * (1.0 - 14 * len(steps) / len(DEMAND))
 
 
 def test_a_demand_that_does_not_change_is_refused() -> None:

@@ -107,7 +107,7 @@ def test_the_report_of_a_replay_shows_pieces_of_the_drive(chromium: Browser, bot
     require_clean(page, chromium)
 
 
-def test_the_report_of_an_identification_shows_response_and_innovations(
+def test_the_report_of_an_identification_shows_prediction_and_response(
     chromium: Browser, both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("driveline.harness.commands.identify.draw", lambda *_: [])
@@ -120,7 +120,7 @@ def test_the_report_of_an_identification_shows_response_and_innovations(
     for label, colour in (
         ("motor speed in rad/s", BLUE),
         ("motor speed over torque in dB", VERMILION),
-        ("density", "#7fb8d8"),  # BLUE, half of it
+        ("load torque in N·m", BLUE),
     ):
         assert chromium.figure(label).pixels(colour) > 100, label
     require_clean(page, chromium)
