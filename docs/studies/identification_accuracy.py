@@ -204,8 +204,8 @@ class Trap:
 TRAPS = (
     Trap("nothing", "", {}),
     Trap("wheel speed 25 ms later over CAN", "", {"can.d_min": 0.026, "can.d_max": 0.05}),
-    Trap("load torque 4 ms late", "load torque comes 4", {}, late={"T_load": 0.004}),
-    Trap("motor speed 2 ms late, a sample", "motor speed comes 2", {}, late={"omega_1": 0.002}),
+    Trap("load torque 4 ms late", "load torque comes", {}, late={"T_load": 0.004}),
+    Trap("motor speed 2 ms late, a sample", "motor speed comes", {}, late={"omega_1": 0.002}),
     Trap("motor speed 1 ms late, between samples", "motor speed has no white noise", {}, late={"omega_1": 0.001}),
     Trap("J_1 taken 3 % too large", "J_1", {}, J_1=1.03),
     Trap("tau half as long again", "tau", {"motor.tau": 0.0045}),
