@@ -76,7 +76,7 @@ def _in_our_master(system: System, steps: int, make: MakeSteps) -> Run:
     timed = Timed(make)
     with loaded(system, make_steps=timed) as running:
         duration = steps * STEP_SIZE
-        results = running.run(Experiment(duration, STEP_SIZE, signals(STEADY), START, Scheme.JACOBI, "benchmark"))
+        results = running.run(Experiment(duration, STEP_SIZE, signals(STEADY), START, Scheme.JACOBI, label="benchmark"))
     return Run(timed.seconds / steps * MICRO, float(results["plant.T_gear"][-1]))
 
 

@@ -79,7 +79,9 @@ def driven(path: Path, given: Given) -> tuple[np.ndarray, float]:
     parameters: Mapping[str, float] = {f"plant.{name}": value for name, value in given.parameters.items()}
     timed = Timed(CompiledSteps)
     with loaded(System({"plant": path}, own=frozenset({"plant"})), make_steps=timed) as running:
-        results = running.run(Experiment(steps * STEP_SIZE, STEP_SIZE, inputs, parameters, Scheme.JACOBI, "benchmark"))
+        results = running.run(
+            Experiment(steps * STEP_SIZE, STEP_SIZE, inputs, parameters, Scheme.JACOBI, label="benchmark")
+        )
     return results["plant.T_gear"], timed.seconds / steps * MICRO
 
 

@@ -138,7 +138,9 @@ def compare_loop(plant: str, manoeuvre: Manoeuvre, folder: Path) -> dict[str, Di
 def drive(system: System, manoeuvre: Manoeuvre) -> np.ndarray:
     """The loop through a manoeuvre, with damping."""
     inputs, parameters = signals(manoeuvre), start(manoeuvre)
-    return run(system, Experiment(manoeuvre.duration, STEP_SIZE, inputs, parameters, Scheme.JACOBI, manoeuvre.name))
+    return run(
+        system, Experiment(manoeuvre.duration, STEP_SIZE, inputs, parameters, Scheme.JACOBI, label=manoeuvre.name)
+    )
 
 
 def fed(instance: str, system: System, results: np.ndarray, manoeuvre: Manoeuvre) -> Given:

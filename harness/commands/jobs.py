@@ -153,7 +153,7 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
         "start_values": {name: origin.start_values for name, origin in ours.items() if origin},
         **({"digests": digests} if digests else {}),
         "parameters": {**own, **made.parameters},
-        **({"car": made.car} if made.car else {}),
+        **({"road_load": made.road_load} if made.road_load else {}),
         "seed": made.seed,
         "mapping": made.mapping,
     }

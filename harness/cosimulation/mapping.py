@@ -9,6 +9,7 @@ in it already.
 from collections.abc import Iterable, Iterator, Mapping
 from copy import copy
 from pathlib import Path
+from typing import Any, cast
 
 from fmpy.model_description import ModelVariable
 
@@ -60,7 +61,7 @@ def read(path: Path) -> dict[str, str]:
     for place, names in entries.items():
         if not isinstance(names, dict):
             raise WiringError(f"{path}: {place} = {names!r:.40}; it must be a table such as [plant]")
-        for name, theirs in names.items():
+        for name, theirs in cast(dict[str, Any], names).items():
             if not (isinstance(theirs, str) and theirs):
                 raise WiringError(f"{path}: {place}.{name} = {theirs!r:.40}; it must be a name of the FMU in quotes")
             found[f"{place}.{name}"] = theirs

@@ -37,7 +37,7 @@ ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "can": BLOCK,
     "control": (lambda value: _number(value) and value in (True, False), "True or False"),
     "parameters": (lambda value: _texts(value, object), "a dictionary such as {'plant.J_1': 0.06}"),
-    "car": (lambda value: _texts(value, Real), "a dictionary such as {'m': 1450.0}"),
+    "road_load": (lambda value: _texts(value, Real), "a dictionary such as {'m': 1450.0}"),
     "step_size": (lambda value: isinstance(value, Real) and 0.0 < float(value) < inf, "a number of seconds above 0"),
     "scheme": (lambda value: isinstance(value, Scheme | str), "a Scheme or its name"),
     "seed": (lambda value: isinstance(value, Integral) and int(value) >= 0, "a whole number from 0 on"),

@@ -37,7 +37,7 @@ def built_with(
     made = built(given)
     system = loop(made)
     values, car = _of_files(system, vehicle, parameters) if vehicle or parameters else ({}, {})
-    made = dataclasses.replace(made, parameters=values | dict(assigned), car=car)
+    made = dataclasses.replace(made, parameters=values | dict(assigned), road_load=car)
     require(out_of_bounds(fit(system, parameters=made.parameters), made.parameters))
     return made
 

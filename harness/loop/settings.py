@@ -37,7 +37,7 @@ class RunChanges(TypedDict, total=False):
     can: NameOrFile | None
     control: bool
     parameters: Mapping[str, float] | None
-    car: Mapping[str, float] | None
+    road_load: Mapping[str, float] | None
     step_size: float
     scheme: Scheme | str
     seed: int
@@ -65,7 +65,7 @@ class Settings:
         control: whether the damping control is enabled.
         parameters: `instance.variable` -> value, beside the start and the seeds that a run sets; `instance.variable@t`
             -> value of a tunable one from the time t in s on.
-        car: what the road load takes of a plant that has no such parameter: i, r, m, g, c_rr, c_wa -> value.
+        road_load: what the road load takes of a plant that has no such parameter: i, r, m, g, c_rr, c_wa -> value.
         step_size: communication step in s.
         scheme: when outputs reach inputs.
         seed: of all noise and jitter.
@@ -86,7 +86,7 @@ class Settings:
     can: NameOrFile = PLACES["can"][0]
     control: bool = True
     parameters: Mapping[str, float] = field(default_factory=dict)
-    car: Mapping[str, float] = field(default_factory=dict)
+    road_load: Mapping[str, float] = field(default_factory=dict)
     step_size: float = STEP_SIZE
     scheme: Scheme = Scheme.PROPAGATED
     seed: int = 1
@@ -101,7 +101,7 @@ class Settings:
         given = {name: PLACES[name][0] if block is None else block for name, block in self.blocks.items()}
         if isinstance(self.mapping, str | PathLike):
             object.__setattr__(self, "mapping", _read_mapping(Path(self.mapping)))
-        given |= {name: dict(getattr(self, name) or {}) for name in ("parameters", "car", "mapping")}
+        given |= {name: dict(getattr(self, name) or {}) for name in ("parameters", "road_load", "mapping")}
         for name, value in {**given, "scheme": Scheme(self.scheme), "folder": Path(self.folder)}.items():
             object.__setattr__(self, name, value)
 

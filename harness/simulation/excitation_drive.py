@@ -120,7 +120,7 @@ def planned(settings: Settings, demand: Mapping[str, Any], v_0: float) -> Planne
     require_steps(demand["duration"], settings.step_size)
     T_max = torque_limit(fitted.interfaces["motor"], settings.parameters)
     require_demand(demand["mean"], demand["amplitude"], demand["clock"], T_max)
-    load = RoadLoad.of_plant(fitted.interfaces["plant"], settings.parameters, settings.car)
+    load = RoadLoad.of_plant(fitted.interfaces["plant"], settings.parameters, settings.road_load)
     slope = holding_slope(load, demand["mean"], v_0)
     manoeuvre = binary_torque("prbs", **demand, v_0=v_0, slope=slope)
     require(out_of_bounds(fitted, {**start(manoeuvre), **settings.parameters}))

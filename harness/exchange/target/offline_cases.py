@@ -68,7 +68,7 @@ def cases_in_loop(
     for manoeuvre in USUAL_MANOEUVRES:
         yield recorded(manoeuvre, system, names, settings)
     track = Track.of(read_drive(Path(TOWN_DRIVE)), torque_limit(interfaces["motor"], settings.parameters))
-    load = RoadLoad.of_plant(interfaces["plant"], settings.parameters, settings.car)
+    load = RoadLoad.of_plant(interfaces["plant"], settings.parameters, settings.road_load)
     yield recorded(followed(track, load, settings)[0], system, names, settings)
 
 

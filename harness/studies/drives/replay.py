@@ -121,7 +121,7 @@ def car_of(settings: Settings) -> tuple[RoadLoad, float]:
     """The road load of the plant of a loop, and the largest torque of its motor in N.m."""
     interfaces = fit(loop(settings)).interfaces
     limit = torque_limit(interfaces["motor"], settings.parameters)
-    return RoadLoad.of_plant(interfaces["plant"], settings.parameters, settings.car), limit
+    return RoadLoad.of_plant(interfaces["plant"], settings.parameters, settings.road_load), limit
 
 
 def replay(track: Track, load: RoadLoad, controllers: Mapping[str, Settings], held: float | None = None) -> list[Ride]:
