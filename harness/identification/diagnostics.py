@@ -84,6 +84,8 @@ validation vehicle."""
 def diagnose_parameters(found: Found) -> Iterator[str]:
     """What skews and gains surely are, and what else they may mean."""
     p, off = found.p, found.deviations
+    if any(Z_95 * off.get(name, 0.0) > CLOSE * getattr(p, name) for name in ("J_2", "C")):
+        return  # what a weak excitation lacks may look like any cause
     yield from _skews(p, off)
     unsure = MODEL_GAIN if lacking(found) else 0.0
     if abs(p.g_T - 1.0) > max(unsure, SURELY * off.get("g_T", np.inf)):

@@ -98,6 +98,13 @@ def test_both_torques_late_alike_are_a_motor_speed_that_is_early(apart: float, b
         assert messages[0].startswith("motor speed comes 1.0 ms late (or both torques 1.0 ms early),")
 
 
+@pytest.mark.parametrize("name", ["J_2", "C"])
+def test_no_cause_is_named_where_the_drive_train_is_hardly_known(name: str) -> None:
+    for factor, named in ((0.99, True), (1.01, False)):
+        hardly = known({name: factor * CLOSE * getattr(P, name) / Z_95}, late_T=0.001, g_L=1.3)
+        assert bool(list(diagnose_parameters(hardly))) == named
+
+
 def test_a_skew_as_long_as_is_looked_at_may_be_longer() -> None:
     assert " comes 6.0 ms or more late," in text(diagnose_parameters(known(late_L=LATEST)))
 
