@@ -3,7 +3,7 @@
 Sensor noise would otherwise rattle the motor of a standing car in its gap.
 """
 
-from ..block.operators import logical_and, minimum, where
+from ..block.operators import clip, logical_and, minimum, where
 from .supervision_interface import Parameters
 
 
@@ -19,7 +19,7 @@ def longest(p: Parameters) -> float:
 
 def quiet_time(quiet: float, still: bool, T_s: float, p: Parameters) -> float:
     """Time in s without demand and motion, one sample later; counted no further than needed."""
-    return where(still, minimum(quiet + T_s, longest(p)), 0.0)
+    return where(still, minimum(quiet + T_s, 2.0 * longest(p)), 0.0)
 
 
 def is_complete(quiet: float, p: Parameters) -> bool:
@@ -27,6 +27,11 @@ def is_complete(quiet: float, p: Parameters) -> bool:
     return quiet >= longest(p)
 
 
+def is_seen(quiet: float, p: Parameters) -> bool:
+    """Whether it was complete rest for as long again: a start without demand and motion is only taken for rest."""
+    return quiet >= 2.0 * longest(p)
+
+
 def remaining_damping(quiet: float, p: Parameters) -> float:
     """Share of the damping that is left, `quiet` s after the last demand or motion: 0 at complete rest."""
-    return minimum((longest(p) - quiet) / p.t_fade, 1.0)
+    return clip((longest(p) - quiet) / p.t_fade, 0.0, 1.0)

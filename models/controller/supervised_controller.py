@@ -100,7 +100,8 @@ class Supervised(Generic[E, L]):
         rested = logical_and(standstill.is_complete(x.quiet, p), logical_not(unclear))
         launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
         pushed = logical_and(rested, abs(T_driver) > p.T_still)
-        direction = trust.direction(x.trust, u, against, pushed, omega_1, logical_not(bad), T_S, p)
+        sure = logical_or(against, logical_and(pushed, standstill.is_seen(x.quiet, p)))
+        direction = trust.direction(x.trust, u, sure, pushed, omega_1, logical_not(bad), T_S, p)
         side = trust.sign_of(direction)
         turned = side * omega_1 < -p.omega_still
         wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, side, T_S, p)

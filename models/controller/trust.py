@@ -4,9 +4,9 @@ While there is trust, a clock runs for each time after which causes count (t_bad
 found. Without trust, the first of them runs as long as nothing is found, until trust is back.
 
 A wheel speed has no sign. The direction of the car is that which the bus tells, else that in which it is driven out of
-rest, until the motor turns. Its magnitude says how sure it is: it grows for t_apart as the motor turns, and the other
-way it shrinks as slowly, since wheels that lock throw the motor back for about as long. While it is not sure that goes
-on without trust, so that a start with any signals heals.
+rest; out of a start that is only taken for rest until the motor turns. Its magnitude says how sure it is: it grows for
+t_apart as the motor turns, and the other way it shrinks as slowly, since wheels that lock throw the motor back for
+about as long. While it is not sure that goes on without trust, so that a start with any signals heals.
 """
 
 from collections.abc import Mapping
@@ -39,13 +39,13 @@ def is_trusted(x: TrustState) -> bool:
 
 
 def direction(
-    x: TrustState, u: Input, against: bool, pushed: bool, omega_1: float, good: bool, T_s: float, p: Parameters
+    x: TrustState, u: Input, sure: bool, pushed: bool, omega_1: float, good: bool, T_s: float, p: Parameters
 ) -> float:
     """Of the car in this sample.
 
     Args:
-        against: whether the motor has set off against its torque, which tells it then.
-        pushed: whether a demand has ended the rest, which tells it until the motor turns.
+        sure: whether the demand tells it: it has ended a rest that was seen, or the motor has set off against it.
+        pushed: whether a demand has ended what was taken for rest, which tells it until the motor turns.
         omega_1: motor speed, rad/s.
         good: whether that is good.
     """
@@ -54,7 +54,7 @@ def direction(
     step, towards, demanded = T_s / p.t_apart, sign_of(omega_1), sign_of(u.T_driver)
     along = x.direction * towards + step
     seen = where(turning, towards * minimum(where(along >= 0.0, maximum(along, step), along), 1.0), x.direction)
-    seen = where(against, demanded, where(pushed, step * demanded, seen))
+    seen = where(sure, demanded, where(pushed, step * demanded, seen))
     return where(u.direction > 0, 1.0, where(u.direction < 0, -1.0, seen))
 
 

@@ -19,12 +19,13 @@ def test_a_car_is_still_up_to_a_demand_and_a_motor_speed(side: float) -> None:
     assert not standstill.is_still(0.0, side * above(3.0), P)
 
 
-def test_the_time_of_stillness_is_counted_no_further_than_to_complete_rest() -> None:
+def test_the_time_of_stillness_is_counted_no_further_than_to_rest_that_was_seen() -> None:
     times, quiet = [], 0.0
-    for _ in range(8):
+    for _ in range(14):
         quiet = standstill.quiet_time(quiet, True, T_S, P)
-        times.append(quiet)
-    assert times == [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.5, 1.5]
+        times.append((quiet, standstill.is_complete(quiet, P), standstill.is_seen(quiet, P)))
+    assert [time for time, _, _ in times] == [min(0.25 * (k + 1), 3.0) for k in range(14)]
+    assert [[named[k] for named in times].index(True) for k in (1, 2)] == [5, 11]
 
 
 def test_a_demand_or_motion_ends_rest_at_once() -> None:
@@ -32,11 +33,12 @@ def test_a_demand_or_motion_ends_rest_at_once() -> None:
 
 
 def test_the_damping_fades_out_after_the_time_at_rest() -> None:
-    assert [standstill.remaining_damping(quiet, P) for quiet in (0.0, 1.0, 1.125, 1.25, 1.5)] == [
+    assert [standstill.remaining_damping(quiet, P) for quiet in (0.0, 1.0, 1.125, 1.25, 1.5, 3.0)] == [
         1.0,
         1.0,
         0.75,
         0.5,
+        0.0,
         0.0,
     ]
     assert standstill.remaining_damping(above(1.0), P) < 1.0

@@ -83,6 +83,15 @@ def test_a_start_with_first_samples_that_are_not_those_of_the_car_heals(injector
     assert np.isin(y["controller.status"], ACTING)[y["time"] > end + 0.5].all()
 
 
+@pytest.mark.parametrize("plant", PLANTS)
+def test_a_wrong_sign_while_the_car_pulls_away_out_of_rest_is_not_taken_for_its_direction(injector, settings, plant):
+    """A rest that was seen tells where the demand pushes; the sign is right again after 0.3 s."""
+    y = faulty(injector, settings[plant], MANOEUVRES["launch"], (GAIN, MOTOR_SPEED, 1.071, 1.365, -1.0))
+    fallback = y["time"][y["controller.status"] == supervision.FALLBACK]
+    assert 1.3 < fallback.max() < 1.365 + 0.5
+    assert np.abs(y["plant.T_gear"]).max() < 200.0
+
+
 @pytest.mark.slow
 def test_cases_of_the_campaign_of_starts_are_clean(injector, settings):
     outcomes = campaign(FaultRunner(injector, settings), range(1, 55), 3, workers=1, plan=PLANS["starts"])
