@@ -214,7 +214,7 @@ def test_what_is_repeatable_keeps_all_values_and_a_record_without_words_is_that_
     assert args.set == (("can.tau", 0.1), ("plant.J_1", 0.06))
     assert args.seed == 1
     # So that nothing is usual in one and not in the other.
-    needed = {"replay": "recording", "identify": "recording", "check": "fmus", "again": "made"}
+    needed = {"replay": "recording", "identify": "recording", "check": "fmus", "again": "made", "map": "fmu"}
     for command in COMMANDS.keys() - {"target"}:
         file = Path("a.csv")
         positional = {needed[command]: (file,) if command == "check" else file} if command in needed else {}
@@ -425,7 +425,7 @@ def test_compare_as_a_document_has_every_metric_of_every_run(capsys, both_built,
     assert (off["plant"], off["manoeuvre"], off["control"], on["control"]) == (PLANTS[0], "prbs15", False, True)
     assert set(off) == {"plant", "manoeuvre", "control", "absent", *(metric.key for metric in declared(Metrics))}
     assert (off["settling_time_s"], off["absent"]["settling_time_s"]) == (None, "the manoeuvre is no step")
-    drawn = [f"{PLANTS[0]}_prbs15.{kind}" for kind in ("png", "pdf")]
+    drawn = [f"{PLANTS[0]}_prbs15.png"]
     assert document["files"] == [str(tmp_path / name) for name in ("table.md", "metrics.csv", *drawn)]
     # without gain only what it does in the gap and with the estimated torque is left
     assert 0.0 < on["added_torque_rms_N_m"] < 20.0

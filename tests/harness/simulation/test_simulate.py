@@ -46,7 +46,7 @@ def test_damping_is_on_or_off(value: Any) -> None:
         ({"seed": 1.5}, "seed = 1.5: it must be a whole number"),
         ({"folder": 3}, "folder = 3: it must be the path of a folder"),
         ({"build": 3}, "build = 3: it must be 'native', 'python' or None"),
-        ({"mapping": "plant.T_gear=tau"}, "mapping = 'plant.T_gear=tau': it must be a dictionary"),
+        ({"mapping": ["plant.T_gear=tau"]}, r"mapping = \['plant.T_gear=tau'\]: it must be a dictionary"),
         ({"mapping": {"plant.T_gear": 1}}, "mapping = .*: it must be a dictionary"),
         ({"limits": 1e9}, "limits = 1000000000.0: it must be Limits"),
     ],
