@@ -53,10 +53,7 @@ def progress(total: int, label: str) -> Iterator[Callable[[float], None]]:
         else:
             show = _nowhere
 
-        def done(count: float) -> None:
-            show(count)
-
-        yield done
+        yield show
 
 
 @contextmanager

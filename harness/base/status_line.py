@@ -17,9 +17,6 @@ INTERVAL = 0.2
 """Seconds from one update to the next."""
 
 
-_over = Event()
-
-
 class Line:
     """The line on a terminal, gone before anything else is written there."""
 
@@ -88,15 +85,15 @@ def waiting(name: str, enabled: bool = True) -> Iterator[None]:
         yield
         return
     line = Line(sys.stderr, name)
-    thread = Thread(target=_attend, args=(line,), daemon=True)
+    over = Event()
+    thread = Thread(target=_attend, args=(line, over), daemon=True)
     sys.stdout, sys.stderr = (cast(TextIO, InterruptedStream(stream, line)) for stream in streams)
-    _over.clear()
     with uninterrupted_children():
         thread.start()
     try:
         yield
     finally:
-        _over.set()
+        over.set()
         thread.join()
         line.end()
         sys.stdout, sys.stderr = streams
@@ -107,6 +104,6 @@ def is_terminal(stream: TextIO | None) -> bool:
     return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
-def _attend(line: Line) -> None:
-    while not _over.wait(INTERVAL):
+def _attend(line: Line, over: Event) -> None:
+    while not over.wait(INTERVAL):
         line.beat()

@@ -8,18 +8,18 @@ examples:
 
 from pathlib import Path
 
-from ..base.errors import DrivelineError
+from ..loop.places import PLACES
 from .arguments import option, positional
 from .options import Replacing, file_of, record
 from .printing import JsonPrinting, write_toml
-
-PLACES = ("plant", "controller", "motor", "can")
 
 
 @record
 class Arguments(Replacing, JsonPrinting):
     fmu: Path = positional("the FMU", Path, "FILE.fmu")
-    place: str = option("plant", "where it stands in the loop: %(choices)s (default: %(default)s)", choices=PLACES)
+    place: str = option(
+        "plant", "where it stands in the loop: %(choices)s (default: %(default)s)", choices=tuple(PLACES)
+    )
     output: Path | None = file_of("of the mapping (default: it is printed)")
 
 
@@ -27,8 +27,6 @@ def run(args: Arguments) -> int:
     from ..cosimulation.interface import Interface
     from ..exchange.mapping_draft import as_toml, draft
 
-    if not args.fmu.is_file():
-        raise DrivelineError(f"there is no FMU {args.fmu}")
     proposals = draft(Interface(args.fmu), args.place)
     text = as_toml(proposals, args.fmu.name, args.place)
     if args.output is not None:

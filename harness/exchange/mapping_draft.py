@@ -5,16 +5,15 @@ causality and unit must fit.
 """
 
 import re
-from collections.abc import Iterator, Mapping
-from functools import cache
+from collections.abc import Iterator
 from json import dumps
 from typing import NamedTuple
 
 from fmpy.model_description import ModelVariable
 
 from ..cosimulation.interface import Interface, unit_of
-from ..cosimulation.system import Port
-from ..cosimulation.unit_conversion import factor
+from ..cosimulation.system import Port, System
+from ..cosimulation.unit_conversion import converts
 from ..loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS, PARAMETERS
 
 WORDS = {
@@ -66,7 +65,7 @@ class Proposal(NamedTuple):
 
 
 def draft(interface: Interface, place: str) -> list[Proposal]:
-    """A proposal for each name of a place of the loop; no variable is proposed twice, but for outputs."""
+    """A proposal for each name of a place of the loop; no variable is proposed twice."""
     found: dict[str, list[tuple[float, str]]] = {}
     ports = {port.name: (port, causality) for causality, port in _ports(place)}
     for name, (port, causality) in ports.items():
@@ -115,28 +114,12 @@ def _alike(ours: frozenset[str], theirs: frozenset[str]) -> float:
 
 def _fits(variable: ModelVariable, unit: str | None) -> bool:
     theirs = unit_of(variable)
-    if unit is None or not theirs:
-        return (variable.type == "Real") == (unit is not None) or unit is None
-    return variable.type == "Real" and _converts(theirs, unit)
-
-
-@cache
-def _converts(theirs: str, ours: str) -> bool:
-    try:
-        factor(theirs, ours)
-    except ValueError:
-        return False
-    return True
+    return unit is None or (variable.type == "Real" and (not theirs or converts(theirs, unit)))
 
 
 def _ports(place: str) -> Iterator[tuple[str, Port]]:
     """Causality and name of what the loop exchanges with a place."""
-    every: Mapping[str, list[Port]] = {
-        "input": [*(Port(c.target, c.unit) for c in CONNECTIONS), *INPUTS],
-        "output": [*(Port(c.source, c.unit) for c in CONNECTIONS), *OUTPUTS],
-        "parameter": [*PARAMETERS],
-    }
-    for causality, ports in every.items():
-        for port in dict.fromkeys(ports):
+    for causality, ports in System({}, CONNECTIONS, INPUTS, PARAMETERS, OUTPUTS).ports.items():
+        for port in ports:
             if port.name.startswith(f"{place}."):
                 yield causality, port

@@ -35,6 +35,7 @@ RECORDED = {
     "T_wheel": MEASURED_WHEELS,
 }
 """The quantities of a test drive beside the time, and the output `instance.variable` from which each is recorded."""
+
 DECIMALS = 6
 """Of the values in the file, far below what any sensor resolves."""
 

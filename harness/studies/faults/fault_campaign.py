@@ -8,12 +8,13 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from ...base.collected_warnings import warn_once
 from ...simulation.case_archive import Table
 from ...simulation.many_runs import run_many
 from .evidence import Evidence
 from .fault_cases import PLANS, Case, Plan, case
 from .fault_catalogue import NOTHING
-from .fault_injection import FaultRunner, Limits, Runs
+from .fault_injection import FaultRunner, Runs
 from .judges import JUDGES
 
 
@@ -99,7 +100,7 @@ def campaign(
 
 def outcome(runner: FaultRunner, each: Case) -> Outcome:
     """What comes of a case."""
-    return judged(each, runner.runs(each), runner.limits(each.plant))
+    return judged(runner, each, runner.runs(each))
 
 
 def distinguishing(runner: FaultRunner, seed: int, plan: Plan) -> dict[str, Any]:
@@ -113,9 +114,12 @@ def distinguishing(runner: FaultRunner, seed: int, plan: Plan) -> dict[str, Any]
     }
 
 
-def judged(each: Case, runs: Runs, limits: Limits) -> Outcome:
-    """What the judges say of the runs of a case."""
-    seen = Evidence(runs, each.faults, limits)
+def judged(runner: FaultRunner, each: Case, runs: Runs) -> Outcome:
+    """What the judges say of the runs of a case; where the controller tells no status, which of them find nothing."""
+    if file := runner.without_status(each.plant):
+        silent = ", ".join(judge.name for judge in JUDGES if judge.of_status)
+        warn_once(f"{file} has no output status; not judged: {silent}")
+    seen = Evidence(runs, each.faults, runner.limits(each.plant))
     return Outcome(each, {judge.name: judge.measure(seen) for judge in JUDGES})
 
 

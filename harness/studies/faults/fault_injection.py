@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.recfunctions import append_fields, repack_fields
 
-from ...base.collected_warnings import warn_once
 from ...base.known_names import require_different
 from ...cosimulation.experiment import Experiment
 from ...cosimulation.runs import run
@@ -37,9 +36,6 @@ PASSES = {
 """What the controller gets from SignalFaults, and what that gets in its place."""
 
 STATUS, T_DAMP = "controller.status", "controller.T_damp"
-
-NOT_JUDGED = ("noticed", "stale", "false alarm", "back")
-"""The judges that read the status, which a controller of somebody else need not tell."""
 
 JUDGED = (
     Port(STATUS, None),
@@ -129,6 +125,11 @@ class FaultRunner:
 
         return Limits(value("T_max"), value("T_add_max"), value("T_take_max"), value("omega_max"))
 
+    def without_status(self, plant: str) -> str | None:
+        """The file of a controller of somebody else that does not tell its status."""
+        fitted = self._fit(plant)
+        return fitted.file(STATUS) if STATUS in fitted.absent else None
+
     def _shared(self, plant: str, situation: str, noise: int, on_ice: tuple[Fault, ...], control: bool) -> np.ndarray:
         key = plant, situation, noise, on_ice, control
         if on_ice:
@@ -152,19 +153,17 @@ class FaultRunner:
         settings = running(self._settings[plant].replace(control=control))
         parameters |= dict(settings.parameters) | _parameters(faults, noise)
         given = {"inputs": signals(manoeuvre, control), "parameters": parameters, "label": manoeuvre.name}
-        return _completed(at_samples(run(self._system(plant, control), Experiment(manoeuvre.duration, **given))))
+        system = with_faults(loop(settings), self._injector)
+        return _completed(at_samples(run(system, Experiment(manoeuvre.duration, **given))))
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:
             warn_of_stale(system := self._system(plant))
             self._fitted[plant] = fit(system)
-            if STATUS in self._fitted[plant].absent:
-                file = self._fitted[plant].file(STATUS)
-                warn_once(f"{file} has no output status; not judged: {', '.join(NOT_JUDGED)}")
         return self._fitted[plant]
 
-    def _system(self, plant: str, control: bool = True) -> System:
-        return with_faults(loop(self._settings[plant], control=control), self._injector)
+    def _system(self, plant: str) -> System:
+        return with_faults(loop(self._settings[plant]), self._injector)
 
 
 def _completed(run: np.ndarray) -> np.ndarray:

@@ -66,7 +66,7 @@ def write_case(
     """
     each = case(number, seed, runner.plants, plan)
     runs = runner.runs(each)
-    outcome = judged(each, runs, runner.limits(each.plant))
+    outcome = judged(runner, each, runs)
     stem = folder / f"case_{number}"
     files = [stem.with_suffix(".csv")]
     write_csv(runs.faulty, files[0])

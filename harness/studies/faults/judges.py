@@ -40,13 +40,18 @@ LEAST_RMS, LEAST_SWING = 1.0, 5.0
 
 @dataclass(frozen=True)
 class Judge:
-    """One question about a run, answered by a number that must not be above the limit."""
+    """One question about a run, answered by a number that must not be above the limit.
+
+    Attributes:
+        of_status: whether it is about the status, so that it finds nothing where a controller tells none.
+    """
 
     name: str
     unit: str
     limit: float
     question: str
     measure: Callable[[Evidence], float]
+    of_status: bool = False
 
 
 def excess_of_T_ref(seen: Evidence) -> float:
@@ -159,10 +164,10 @@ def _largest_near(x: np.ndarray) -> np.ndarray:
 JUDGES = (
     Judge("limited", "N.m", 1e-9, "T_ref beyond T_max (inf: not finite)", excess_of_T_ref),
     Judge("authority", "N.m", 1e-9, "torque added beyond T_add_max, or taken beyond T_take_max", excess_of_T_damp),
-    Judge("noticed", "s", NOTICED + 1e-9, "time for which a wrong motor signal is used", time_blind),
-    Judge("stale", "s", STALE + 1e-9, "time for which a bad message counts as wheel speed", time_deaf),
-    Judge("false alarm", "s", 1e-9, "time in fallback that no fault calls for", time_of_false_alarm),
-    Judge("back", "s", BACK + 1e-9, "time until everything is as before", time_to_return),
+    Judge("noticed", "s", NOTICED + 1e-9, "time for which a wrong motor signal is used", time_blind, of_status=True),
+    Judge("stale", "s", STALE + 1e-9, "time for which a bad message counts as wheel speed", time_deaf, of_status=True),
+    Judge("false alarm", "s", 1e-9, "time in fallback that no fault calls for", time_of_false_alarm, of_status=True),
+    Judge("back", "s", BACK + 1e-9, "time until everything is as before", time_to_return, of_status=True),
     Judge("kick", "N.m", 2.0, "torque added after that which the swing does not call for", kick),
     Judge("settled", "N.m", 5.0, "swing that is left at the end", swing_left),
     Judge("rms", "1", 1.2, "gear torque 5-50 Hz over that without control", ratio_of_rms),
