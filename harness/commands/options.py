@@ -9,9 +9,9 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
+from ...fmus.written_numbers import real, whole
 from ..base.errors import DrivelineError
 from ..base.plain_text import quoted
-from ..base.written_numbers import real, whole
 from ..cosimulation.limits import USUAL_LIMITS, Limits
 from ..loop.places import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..views.figure_options import KINDS, USUAL_KINDS, FigureOptions

@@ -5,10 +5,10 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from ...fmus.written_numbers import real
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..base.plain_text import quoted
-from ..base.written_numbers import real
 from ..recordings.clock_times import Clock, read_clock
 from ..recordings.quantities import QUANTITIES, aliases, example
 from ..recordings.time_base import Cut

@@ -14,13 +14,13 @@ from typing import Any, cast
 from fmpy.model_description import ModelVariable
 
 from ...fmus.toml_file import toml_entries
+from ...fmus.unit_conversion import SI, factor
 from ..base.collected_warnings import warn_once
 from ..base.errors import WiringError
 from ..base.known_names import nearest
 from ..base.plain_text import words
 from .interface import Interface, unit_of
 from .system import System
-from .unit_conversion import SI, factor
 
 
 def parsed(texts: Iterable[str]) -> dict[str, str]:

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...fmus.written_numbers import real
 from ..base.errors import WiringError
 from ..base.plain_text import quoted
-from ..base.written_numbers import real
 
 LATE = 1e-6
 """Share of a step by which an instant may be late and still be that of a change."""

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from fmpy.model_description import ModelVariable
 
+from ...fmus.unit_conversion import converts
 from ..cosimulation.interface import Interface, unit_of
 from ..cosimulation.system import Port, System
-from ..cosimulation.unit_conversion import converts
 from ..loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS, PARAMETERS
 
 WORDS = {

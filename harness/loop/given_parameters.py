@@ -5,10 +5,10 @@ import logging
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from ...fmus.unit_conversion import factor
 from ..base.errors import DrivelineError, WiringError
 from ..cosimulation.interface import Interface, unit_of
 from ..cosimulation.system import System
-from ..cosimulation.unit_conversion import factor
 from ..cosimulation.wiring import fit, out_of_bounds, require
 from .built_fmus import built
 from .places import PLANTS

@@ -159,19 +159,14 @@ def _number(key: str, value: Any, unit: str) -> float:
 
 
 def _converted(key: str, text: str, unit: str) -> float:
-    from ..base.written_numbers import real
-    from ..cosimulation.unit_conversion import factor
+    from ...fmus.unit_conversion import quantity
 
-    number, _, given = plain(text, 60).partition(" ")
-    value = real(number)
-    if value is None or not isfinite(value) or not given:
-        raise ManoeuvreError(f'{key} = "{plain(text, 60)}": it must be a number and a unit, as in "{EXAMPLES[unit]}"')
     try:
-        if unit == "rad" and given == "%":
-            return atan(0.01 * value)
-        return value * factor(given, unit)
+        if unit == "rad" and text.endswith(" %"):
+            return atan(0.01 * quantity(text, "%"))
+        return quantity(text, unit)
     except ValueError as reason:
-        raise ManoeuvreError(f'{key} = "{plain(text, 60)}" {reason}') from reason
+        raise ManoeuvreError(f'{key} = "{plain(text, 60)}" {reason}; "{EXAMPLES[unit]}" is one') from reason
 
 
 def _from_table(path: Path) -> Manoeuvre:

@@ -6,7 +6,7 @@ from math import isfinite, nan
 
 import numpy as np
 
-from ..base.written_numbers import real
+from ...fmus.written_numbers import real
 
 SIGNS = str.maketrans(
     dict.fromkeys("−–‒﹣－", "-") | {"＋": "+", "\N{NO-BREAK SPACE}": " ", "\N{NARROW NO-BREAK SPACE}": " "}

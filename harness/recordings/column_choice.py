@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from shlex import quote
 
+from ...fmus.unit_conversion import converts, factor, known
 from ..base.known_names import nearest
 from ..base.plain_text import plain
-from ..cosimulation.unit_conversion import converts, factor, known
 from .clock_times import EXAMPLES
 from .headings import key, split, without_brackets
 from .quantities import BY_UNIT, QUANTITIES, Aliases, example

@@ -9,7 +9,7 @@ from itertools import islice, zip_longest
 from pathlib import Path
 from statistics import median
 
-from ..cosimulation.unit_conversion import known
+from ...fmus.unit_conversion import known
 from .cells import decimal_of, is_missing, is_number
 from .clock_times import is_clock_time
 from .source import RecordingError

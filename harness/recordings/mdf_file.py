@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from ...fmus.unit_conversion import converts, factor
 from ..base.optional_packages import required
 from ..base.plain_text import plain
-from ..cosimulation.unit_conversion import converts, factor
 from .clock_times import Clock
 from .source import Column, RecordingError, Samples, Where, samples
 

@@ -14,8 +14,8 @@ from typing import NamedTuple, TextIO
 import numpy as np
 
 from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
+from ...fmus.unit_conversion import converts, factor
 from ..base.plain_text import plain
-from ..cosimulation.unit_conversion import converts, factor
 from .cells import SPELLINGS, is_missing, numbers
 from .clock_times import seconds
 from .dialect import Dialect, dialect_of

@@ -18,9 +18,9 @@ import pyarrow.parquet as pq
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import BuildError
 from driveline.fmus.file_limits import SECONDS
+from driveline.fmus.unit_conversion import SI, factor
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.cosimulation.system import System
-from driveline.harness.cosimulation.unit_conversion import SI, factor
 from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.manoeuvres.manoeuvre_file import read_manoeuvre
 from driveline.harness.recordings.drive import read_drive

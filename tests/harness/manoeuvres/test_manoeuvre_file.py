@@ -62,7 +62,7 @@ def test_a_file_needs_a_duration_alone_and_is_not_too_long(tmp_path):
         ("duration", "not TOML"),
         ("T_driver = 5", "no duration"),
         ("duration = 5\nT_drive = 3", "T_drive is no key; did you mean T_driver"),
-        ('duration = "5"', 'duration = "5": it must be a number and a unit'),
+        ('duration = "5"', 'duration = "5" must be a number and a unit; "200 ms" is one'),
         ("duration = true", "duration = True: it must be a finite number of s"),
         ("duration = 0.0009", "duration = 0.0009: it must be 0.001 to 3600 s"),
         ("duration = 3601", "duration = 3601: it must be 0.001 to 3600 s"),

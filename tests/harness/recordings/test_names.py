@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.cosimulation.unit_conversion import factor
+from driveline.fmus.unit_conversion import factor
 from driveline.harness.recordings.channels import Channels
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.headings import split, without_brackets

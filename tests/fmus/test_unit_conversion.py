@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from driveline.harness.cosimulation.unit_conversion import LONGEST, SI, factor, known
+from driveline.fmus.unit_conversion import LONGEST, SI, factor, known
 
 
 @pytest.mark.parametrize(

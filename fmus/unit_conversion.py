@@ -5,7 +5,7 @@ from functools import cache
 from math import isfinite
 from typing import Any, cast
 
-from ..base.plain_text import quoted
+from .written_numbers import real
 
 LONGEST = 60
 """Characters of a unit. Real ones have up to 20; thousands of factors would be more than pint can nest."""
@@ -94,6 +94,19 @@ def factor(unit: str, target_unit: str) -> float:
         return _finite(folded, target_unit)
 
 
+def quantity(text: str, target_unit: str) -> float:
+    """The value in a unit of a text with a number and a unit, such as "15 km/h".
+
+    Raises:
+        ValueError: it is no such text, or does not convert; the message is to stand after the text.
+    """
+    number, _, unit = text.strip().partition(" ")
+    value = real(number)
+    if value is None or not isfinite(value) or not unit:
+        raise ValueError("must be a number and a unit")
+    return value * factor(unit, target_unit)
+
+
 def converts(unit: str, target_unit: str) -> bool:
     """Whether there is a factor."""
     try:
@@ -155,5 +168,5 @@ def _parsed(unit: str, registry: Any) -> Any:
         powers = re.sub(r"([^\W\d_]|[%°])\^?([+-]?\d+)", r"\1**(\2)", text)
         return registry.Unit(powers.replace(".", "*"))
     except (ValueError, pint.PintError) as error:
-        known_are = "known are those such as N.m/rad"
-        raise ValueError(f"is in {quoted(unit)}, which is not a known unit ({known_are})") from error
+        shown = repr(unit if len(unit) <= LONGEST else f"{unit[:LONGEST]} ... ({len(unit)} characters)")
+        raise ValueError(f"is in {shown}, which is not a known unit (known are those such as N.m/rad)") from error
