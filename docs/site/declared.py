@@ -2,12 +2,15 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.documentation import tables, timing
 from driveline.fmus.file_limits import LIMITS
 from driveline.fmus.fmu import Fmu
 from driveline.harness.exchange.compliance import check
+from driveline.harness.identification import diagnostics
+from driveline.harness.identification.priors import PRIORS
 from driveline.harness.recordings import (
     alignment,
     channel_rules,
@@ -116,7 +119,26 @@ def recording_checks() -> str:
 
 def recording_thresholds() -> str:
     """The numbers that decide in them, each with the measurement that it comes from."""
-    rooms = (missing_values, channel_rules, force_balance, plausibility, relations, delays, signal_checks, alignment)
+    return _thresholds(
+        missing_values, channel_rules, force_balance, plausibility, relations, delays, signal_checks, alignment
+    )
+
+
+def identification_thresholds() -> str:
+    """The numbers from which on an identification warns."""
+    return _thresholds(diagnostics)
+
+
+def identification_priors() -> str:
+    """What is known of the parameters before a recording is seen."""
+    rows = (
+        (f"`{name}`", row.meaning, row.unit, f"{row.deviation:g}" + " of ln" * row.positive, row.source)
+        for name, row in PRIORS.items()
+    )
+    return markdown_table(("parameter", "what it is", "unit", "standard deviation", "why"), rows, labels=5)
+
+
+def _thresholds(*rooms: ModuleType) -> str:
     rows: dict[int, tuple[str, ...]] = {}
     for room in rooms:
         for name, each in vars(room).items():
@@ -147,6 +169,8 @@ TABLES: dict[str, Callable[[], str]] = {
         recording_plausibility,
         recording_checks,
         recording_thresholds,
+        identification_thresholds,
+        identification_priors,
     )
 }
 """By the names that pages call them."""

@@ -21,11 +21,12 @@ from driveline.harness.design.design_weights import MOTOR, PLANT
 from driveline.harness.design.redesign import REDESIGN_MANOEUVRES
 from driveline.harness.identification.car_file import identified_car
 from driveline.harness.identification.drive_train_response import response
-from driveline.harness.identification.estimator import Found, before, search
+from driveline.harness.identification.estimator import Found, search
 from driveline.harness.identification.identify import FREE, Identified, of_sensors
 from driveline.harness.identification.model_inputs import drive_of
 from driveline.harness.identification.prediction import Predictor
 from driveline.harness.identification.prior_knowledge import identify, known
+from driveline.harness.identification.priors import before
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.prbs import TEST_DRIVE, TEST_SPEED, binary_torque
 from driveline.harness.recordings.measurement import Measurement, read_measurement

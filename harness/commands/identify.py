@@ -1,7 +1,7 @@
 """Identifies the drive train from a recording of a test drive: the inertia of the wheels J_2, the stiffness C and half
 the gap phi_B, each with its 95 % interval, the lag of motor control where the torque demand was recorded, and
 damping, tyre and the time by which each channel is recorded late. Written are the vehicle file, which other commands
-take as --vehicle, beside it all that was found (NAME_identified.json), what made it (NAME.json) and two figures.
+take as --vehicle, beside it all that was found (NAME_identified.json), what made it (NAME.json) and a figure.
 
 The recording is a file with the columns
 
@@ -87,8 +87,8 @@ def run(args: Arguments) -> int:
             args.say(line)
         car_file.identified_car(identified)  # refuses what would make no vehicle file
         made.begin()
-        figures = draw(identified, recording, output.with_suffix(""), options)
-        made.wrote(*write(identified, args.recording, vehicle, output), *figures)
+        figure = draw(identified, recording, output.with_suffix(""), options)
+        made.wrote(*write(identified, args.recording, vehicle, output), *figure)
         for provenance, path in made.reports():
             identification_report_html.report(identified, recording, provenance, path)
         if runs:
@@ -129,14 +129,8 @@ def write(identified: "Identified", recording: Path, vehicle: Mapping[str, Any],
 
 
 def draw(identified: "Identified", recording: "Measurement", stem: Path, options: "FigureOptions") -> list[Path]:
-    """The figures, STEM_prediction.png and STEM_certainty.png."""
-    from ..identification.fit_figures import plot_certainty, plot_prediction
+    """The figure, STEM.png."""
+    from ..identification.fit_figures import plot_fit
 
-    def named(what: str) -> Path:
-        return stem.with_name(f"{stem.name}_{what}")
-
-    one = options._replace(caption=f"{recording.name}, identified {identified.name}")
-    return [
-        *plot_prediction(identified, recording, named("prediction"), one),
-        *plot_certainty(identified, named("certainty"), one),
-    ]
+    caption = f"{recording.name}, identified {identified.name}"
+    return plot_fit(identified, recording, stem, options._replace(caption=caption))

@@ -8,27 +8,15 @@ import numpy as np
 
 from ...fmus.building.one_car import updated
 from ..recordings.source import RecordingError
-from .diagnostics import WORDS
 from .drive_train import DELAYS, Parameters
 from .estimator import Z_95
 from .free_runs import SIMULATED
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
+from .priors import OF_CAR, PRIORS
 from .two_mass_equivalent import equivalent, is_explained
 
-UNITS = {
-    "J_1": "kg.m2",
-    "J_2": "kg.m2",
-    "C": "N.m/rad",
-    "d": "N.m.s/rad",
-    "phi_B": "rad",
-    "tau": "s",
-    "late_T": "s",
-    "late_L": "s",
-    "late_2": "s",
-    "c_t": "N.m/rad",
-    "sigma_t": "rad",
-}
-"""Of what has one."""
+BESIDE = {"tau": "lag of motor control", "late_2": "age of the wheel speed"}
+"""Times in s that the filter does not know, by what they mean."""
 
 MEANS = {
     WITH_LOAD: "J_2 is that of the wheels alone, C that between motor and wheels",
@@ -61,12 +49,13 @@ class Row(NamedTuple):
 
     @property
     def meaning(self) -> str:
-        return {**WORDS, "tau": "lag of motor control", "late_2": "age of the wheel speed"}[self.name]
+        return PRIORS[self.name].meaning if self.name in PRIORS else BESIDE[self.name]
 
     @property
     def unit(self) -> str:
         """Empty if it has none."""
-        return UNITS.get(self.name, "")
+        unit = PRIORS[self.name].unit if self.name in PRIORS else "s"
+        return unit.removeprefix("1")
 
     @property
     def percent(self) -> str:
@@ -79,7 +68,7 @@ def found(identified: Identified) -> list[Row]:
     """Of each parameter that was identified."""
     answer, p = identified.found, identified.p._asdict()
     halves = {name: Z_95 * deviation for name, deviation in answer.deviations.items()}
-    rows = [Row(name, float(p[name]), halves[name], answer.told_by(name)) for name in WORDS if name in halves]
+    rows = [Row(name, float(p[name]), halves[name], answer.told_by(name)) for name in OF_CAR if name in halves]
     if identified.loop:
         tau, half = identified.loop.loop.tau, Z_95 * identified.loop.deviations["tau"]
         rows.append(Row("tau", tau, half, "torque demand"))
@@ -96,7 +85,7 @@ def of_car(identified: Identified) -> tuple[float, float]:
         return equivalent(identified, p).C
 
     # a step inside the bounds: d may be 0
-    steps = {name: 0.1 * by for name, by in answer.deviations.items() if name in WORDS}
+    steps = {name: 0.1 * by for name, by in answer.deviations.items() if name in OF_CAR}
     changes = np.array([(C(p._replace(**{name: getattr(p, name) + by})) - C(p)) / by for name, by in steps.items()])
     at = [answer.free.index(name) for name in steps]
     return C(p), Z_95 * float(np.sqrt(changes @ answer.covariance[np.ix_(at, at)] @ changes))

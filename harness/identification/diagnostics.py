@@ -5,80 +5,76 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.signal import welch
 
+from ..recordings.thresholds import Threshold
 from .drive_train import Parameters, State
 from .estimator import Z_95, Found
 from .model_inputs import LATEST
 from .prediction import Predicted
+from .priors import OF_CAR, PRIORS
 from .torque_loop import FittedLoop
 
-WORDS = {
-    "J_1": "inertia of the motor",
-    "J_2": "inertia of the wheels",
-    "C": "stiffness",
-    "d": "damping",
-    "phi_B": "half the gap",
-    "g_T": "gain of the motor torque",
-    "g_L": "gain of the load torque",
-    "late_T": "delay of the motor torque",
-    "late_L": "delay of the load torque",
-    "c_t": "stiffness of the tyre",
-    "sigma_t": "relaxation length of the tyre",
-}
-"""Parameters in words of the car."""
-
-SKEWED = 2.5e-4
-"""Time in s from which on a skew is named. Smaller ones are allowed for too; the load torque of the validation vehicle,
-which is not late, seems early by 2.0e-4."""
-
-TOGETHER = 2e-4
-"""Difference in s up to which both torques are late together, and so the motor speed early: a skew may be off by it."""
-
-SURELY = 3.0
-"""Standard deviations by which something must be off to be named: by chance once in 400 times."""
-
-DEMAND_LATE = 0.5
-"""Samples by which the torque demand must be late or early to be named."""
-
-LAG_OFF = 0.1
-"""Share of tau that the vehicle file may be wrong by without a warning."""
-
-MODEL_GAIN = 0.05
-"""What the gain of the motor torque may be off by where the model does not explain the car: .035 of the validation
-vehicle, whose motor has friction and stands on mounts."""
-
-LOAD_GAIN = 0.1
-"""What the gain of the load torque may be off by: measurement wheels are right to some per cent."""
-
-ZERO = 5.0
-"""Offset of a recorded torque in N.m from which on it is named; smaller ones are found and do no harm."""
-
-OUTLIER, LONELY = 10.0, 3.0
-"""Size of the innovation of an outlier, and over the median of the CROWD largest: where a model is wrong, many are
-large."""
-
+SKEWED = Threshold(
+    2.5e-4, "s", "skew that is named", "the load torque of the validation vehicle, not late, seems 2.0e-4 s early"
+)
+TOGETHER = Threshold(
+    2e-4,
+    "s",
+    "difference of two skews up to which the motor speed has both",
+    "either was off by 1.3e-4 s at most in 50 drives of other loops",
+)
+SURELY = Threshold(3.0, "1", "standard deviations by which what is named is off", "once in 400 times by chance")
+DEMAND_LATE = Threshold(
+    0.5, "1", "samples by which a torque demand that is named is late or early", "a demand is held for a sample"
+)
+LAG_OFF = Threshold(
+    0.1,
+    "1",
+    "share of tau by which that of the vehicle file is off",
+    "tau half as long again moves J_2 by 9 % where it is not identified",
+)
+MODEL_GAIN = Threshold(
+    0.05,
+    "1",
+    "gain of the motor torque where the model does not explain the car",
+    ".035 of the validation vehicle, whose motor has friction and stands on mounts",
+)
+LOAD_GAIN = Threshold(0.1, "1", "gain of the load torque", "measurement wheels are right to some per cent")
+ZERO = Threshold(5.0, "N.m", "offset of a recorded torque", "offsets of 1.5 (motor) and 4.4 N.m (wheels) do no harm")
+OUTLIER, LONELY = (
+    Threshold(10.0, "1", "size of the innovation of an outlier", "3.7 is the largest of 5000 samples of white noise"),
+    Threshold(3.0, "1", "the same over the median of the 20 largest", "where a model is wrong, many are large"),
+)
 CROWD = 20
+"""These largest."""
 
-COLOURED = 0.3
-"""Power of the motor speed in the last quarter of its band over that in the second, from which on it counts as white;
-0.5 and more as sampled, 0.25 and less interpolated or held."""
-
-MOVED = 60.0
-"""Frequency in Hz below which the drive train itself moves: with samples 4 ms apart the second quarter begins at 31 Hz
-and has 8 to 20 times the power of the noise."""
-
-FLANK = 0.02
-"""Share of the time that the teeth must spend on either flank."""
-
-CLOSE = 0.1
-"""95 % interval over the value from which on a parameter counts as hardly known."""
-
-LACKING = 0.6
-"""What an equation lacks in a sample, over the noise of its sensor, from which on two masses do not explain the car.
-Up to .4 in a loop that holds its torques, 1.4 (motor speed) and 2.7 (load torque) for the validation vehicle."""
-
-OF_TYRE = 30.0
-"""Fit in % of the load torque over free runs below which it is not that of a tyre: 92 for the design model, 60 for the
-validation vehicle."""
+COLOURED = Threshold(
+    0.3,
+    "1",
+    "power of the motor speed in the last quarter of its band over that in the second",
+    "0.5 and more as sampled, 0.25 and less interpolated or held",
+)
+MOVED = Threshold(
+    60.0,
+    "Hz",
+    "frequency below which the drive train itself moves",
+    "with samples 4 ms apart the power at 31 Hz is 8 to 20 times that of the noise",
+)
+FLANK = Threshold(0.02, "1", "share of the time that the teeth spend on either flank", "0.2 s of a test drive of 10 s")
+CLOSE = Threshold(
+    0.1,
+    "1",
+    "95 % interval over the value of what is hardly known",
+    "with C from 90 to 150 for 117 N.m/rad the vehicle is damped 9 % better or worse",
+)
+LACKING = Threshold(
+    0.6,
+    "1",
+    "what an equation lacks in a sample, over the noise of its sensor",
+    "0.4 at most in a loop that holds its torques; 1.4 and 2.7 of the validation vehicle (motor speed, load torque)",
+)
+OF_TYRE = Threshold(
+    30.0, "1", "fit in % of the load torque over free runs", "92 of the design model, 60 of the validation vehicle"
+)
 
 
 def diagnose_parameters(found: Found) -> Iterator[str]:
@@ -116,7 +112,8 @@ def _skews(p: Parameters, off: dict[str, float]) -> Iterator[str]:
         yield f"motor speed comes {_late(late)} (or both torques {_late(-late)}), {allowed}"
         return
     for name, late in named.items():
-        yield f"{WORDS[name].removeprefix('delay of the ')} comes {_late(late)}, against motor speed, {allowed}"
+        channel = PRIORS[name].meaning.removeprefix("delay of the ")
+        yield f"{channel} comes {_late(late)}, against motor speed, {allowed}"
 
 
 def _late(time: float) -> str:
@@ -205,11 +202,12 @@ def diagnose_excitation(found: Found) -> Iterator[str]:
     if min(driving, braking) < FLANK:
         side = "never drive" if driving < FLANK else "never brake"
         yield f"the teeth {side}, so that the gap is not crossed and phi_B is not told; excite about zero torque"
-    known = [name for name in found.free if name in WORDS]
+    known = [name for name in found.free if name in OF_CAR]
     untold = [name for name in known if not found.told_by(name)]
     if untold:
+        meanings = ", ".join(PRIORS[name].meaning for name in untold)
         yield (
-            f"the recording does not tell {', '.join(WORDS[name] for name in untold)} ({', '.join(untold)}): there the "
+            f"the recording does not tell {meanings} ({', '.join(untold)}): there the "
             "answer is what is known of cars; excite more or longer"
         )
     wide = [

@@ -1,60 +1,20 @@
 """The most likely parameters, with what is known of them before: scoring steps with a trust that adapts (Levenberg,
-Marquardt), within physical bounds. Positive parameters are searched by their logarithm."""
+Marquardt), within physical bounds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import norm
 
-from .drive_train import DELAYS, Parameters
-from .model_inputs import LATEST
+from .drive_train import Parameters
 from .prediction import CHANNELS, Noise, Predicted, Predictor
+from .priors import LEAST, PRIORS, before, moved, scales, surprise
 
 Z_95 = float(norm.ppf(0.975))
 """Standard deviations within which 95 % of what is normal are."""
 
-
-class Prior(NamedTuple):
-    """What is known of a parameter before a recording is seen.
-
-    Attributes:
-        deviation: standard deviation, in its unit; of a positive parameter that of its logarithm.
-        source: of that number.
-        positive: whether it is; else it is searched as it is.
-        centre: the most likely value; None: that of the start.
-    """
-
-    deviation: float
-    source: str
-    positive: bool = True
-    centre: float | None = None
-
-
-PRIORS: Mapping[str, Prior] = {
-    "J_1": Prior(0.5, "data sheet of the motor"),
-    "J_2": Prior(2.0, "from bare wheels to a vehicle that does not slip"),
-    "C": Prior(1.0, "cars shuffle at 2 to 12 Hz"),
-    "d": Prior(1.0, "damping ratios of drive trains are below .3", positive=False),
-    "phi_B": Prior(2.0, "from a new gear to a worn one"),
-    "g_T": Prior(0.05, "torque estimates are right to 5 %", centre=1.0),
-    "g_L": Prior(0.05, "measurement wheels are right to some per cent", centre=1.0),
-    "late_T": Prior(2e-3, "tasks and buses of loggers are some ms apart", positive=False, centre=0.0),
-    "late_L": Prior(2e-3, "tasks and buses of loggers are some ms apart", positive=False, centre=0.0),
-    "c_t": Prior(1.5, "tyres of cars"),
-    "sigma_t": Prior(1.5, "tyres of cars"),
-    "lack_1": Prior(4.0, "from the rounding of the filter to a wrong model"),
-    "lack_phi": Prior(4.0, "from the rounding of the filter to a wrong model"),
-    "lack_L": Prior(4.0, "from the rounding of the filter to a wrong model"),
-}
-
-LEAST = {"d": 0.0, "lack_1": 1e-3, "lack_phi": 1e-5, "lack_L": 0.01}
-"""Least values, in their units: no damper drives, and below a hundredth of its noise nothing of a channel is told."""
-
-UNIT = {"d": 0.1, **dict.fromkeys(DELAYS, 1e-3)}
-"""Of what is searched as it is."""
 
 DIFFERENCE = 1e-4
 """Step of the derivatives, of what is searched: about the least standard deviation."""
@@ -134,36 +94,6 @@ class Found:
 
     def _unit(self, name: str) -> float:
         return getattr(self.p, name) if PRIORS[name].positive else 1.0
-
-
-def scales(p: Parameters, free: Sequence[str]) -> np.ndarray:
-    return np.array([UNIT.get(name) or getattr(p, name) for name in free])
-
-
-def before(free: Sequence[str]) -> np.ndarray:
-    """Information about what is searched before a recording is seen."""
-    return np.array([(UNIT.get(name, 1.0) / PRIORS[name].deviation) ** 2 for name in free])
-
-
-def surprise(p: Parameters, free: Sequence[str], centre: Parameters) -> np.ndarray:
-    """How far what is searched is from what was expected."""
-    off = []
-    for name in free:
-        value, prior = getattr(p, name), PRIORS[name]
-        expected = getattr(centre, name) if prior.centre is None else prior.centre
-        off.append(np.log(value / expected) if prior.positive else (value - expected) / UNIT[name])
-    return np.array(off)
-
-
-def moved(p: Parameters, free: Sequence[str], by: np.ndarray) -> Parameters:
-    """A step, within bounds."""
-    values = {
-        name: getattr(p, name) * float(np.exp(step)) if PRIORS[name].positive else getattr(p, name) + UNIT[name] * step
-        for name, step in zip(free, by, strict=True)
-    }
-    values |= {name: float(np.clip(values[name], -LATEST, LATEST)) for name in DELAYS if name in values}
-    values |= {name: max(values[name], least) for name, least in LEAST.items() if name in values}
-    return p._replace(**values)
 
 
 def _without_hesitation(derivatives: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Figures of an identified model: prediction and recording, and how certain it is."""
+"""The figure of an identified model: prediction and recording, frequency response, and how certain it is."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -47,11 +47,10 @@ READING = (
 )
 
 
-def plot_prediction(
-    identified: Identified, recording: Measurement, stem: Path, options: FigureOptions = PLAIN
-) -> list[Path]:
+def plot_fit(identified: Identified, recording: Measurement, stem: Path, options: FigureOptions = PLAIN) -> list[Path]:
     """Measured and predicted speeds and torques in the units of the file, over a window or the last STRETCH, as in
-    Fig. 5 of the paper.
+    Fig. 5 of the paper; below them the frequency response with its 95 % band and what the recording itself shows, and
+    the 95 % ellipses of J_2, C and phi_B.
 
     Args:
         recording: from which it was identified.
@@ -62,9 +61,13 @@ def plot_prediction(
     """
     begin, end = float(recording.time[0]), float(recording.time[-1])
     window = options.clipped(begin, end) if options.window else (max(end - STRETCH, begin), end)
-    rows = [[panel] for panel in predicted(identified, recording, window)]
-    title = f"Measured and predicted\n{identified.name}"
-    return plot(rows, Axis("time in s", window), title, stem, options, size=(7.2, 1.75))
+    alone = [*predicted(identified, recording, window), *responses(identified)]
+    rows = [*([panel] for panel in alone), ellipses(identified)]
+    title = (
+        f"Prediction, frequency response (teeth in contact) and certainty\n{identified.name}"
+    )
+    options = options._replace(caption=f"{options.caption}\n{READING}; {MEANS[identified.name]}".strip())
+    return plot(rows, Axis("time in s", window), title, stem, options, size=(7.2, 1.75), same_y=False)
 
 
 def predicted(identified: Identified, recording: Measurement, window: tuple[float, float]) -> list[Panel]:
@@ -119,22 +122,6 @@ def predicted(identified: Identified, recording: Measurement, window: tuple[floa
     return panels
 
 
-def plot_certainty(identified: Identified, stem: Path, options: FigureOptions = PLAIN) -> list[Path]:
-    """Frequency response from motor torque to motor speed with its 95 % band and what the recording itself shows, and
-    the 95 % ellipses of J_2, C and phi_B.
-
-    Args:
-        stem: path of the files without their ending.
-
-    Returns:
-        The files written.
-    """
-    caption = f"{options.caption}\n{READING}; {MEANS[identified.name]}".strip()
-    rows = [*([panel] for panel in responses(identified)), ellipses(identified)]
-    title = f"Frequency response, teeth in contact, and how certain the parameters are\n{identified.name}"
-    return plot(rows, FREQUENCY, title, stem, options._replace(caption=caption), size=(7.2, 2.4), same_y=False)
-
-
 def responses(identified: Identified) -> list[Panel]:
     """Amplitude and phase of the recording and of the model, on its own and, with a tyre, with the load torque held."""
     f, recorded = recorded_response(identified)
@@ -159,8 +146,14 @@ def responses(identified: Identified) -> list[Panel]:
     shown = np.concatenate([decibels(recorded), decibels(answers[0])])
     shown = shown[np.isfinite(shown)]
     return [
-        Panel("motor speed over\ntorque in dB", amplitude, bounds=(shown.min() + BEYOND[0], shown.max() + BEYOND[1])),
-        Panel("phase in degrees", phase, ticks={k: str(k) for k in range(-90, 91, 45)}, height=0.67),
+        Panel(
+            "motor speed over\ntorque in dB",
+            amplitude,
+            bounds=(shown.min() + BEYOND[0], shown.max() + BEYOND[1]),
+            height=1.3,
+            x=FREQUENCY,
+        ),
+        Panel("phase in degrees", phase, ticks={k: str(k) for k in range(-90, 91, 45)}, height=0.9, x=FREQUENCY),
     ]
 
 
@@ -201,5 +194,5 @@ def ellipses(identified: Identified) -> list[Panel]:
         half_x, half_y = ABOUT * INSIDE * np.sqrt(np.diag(covariance))
         parts = [Curve(*around, color=VERMILION), Points(np.zeros(1), np.zeros(1), color=BLACK)]
         axis = Axis(f"{LABELS[x]} off by, %", (-half_x, half_x))
-        panels.append(Panel(f"{LABELS[y]} off by, %", parts, bounds=(-half_y, half_y), x=axis))
+        panels.append(Panel(f"{LABELS[y]} off by, %", parts, bounds=(-half_y, half_y), height=1.3, x=axis))
     return panels

@@ -32,9 +32,10 @@ from driveline.harness.identification.diagnostics import (
     diagnose_torque_loop,
 )
 from driveline.harness.identification.drive_train import State
-from driveline.harness.identification.estimator import PRIORS, UNTOLD, Z_95, Found
+from driveline.harness.identification.estimator import UNTOLD, Z_95, Found
 from driveline.harness.identification.model_inputs import LATEST
 from driveline.harness.identification.prediction import Predicted
+from driveline.harness.identification.priors import PRIORS
 from driveline.harness.identification.torque_loop import ANSWERS, FittedLoop, TorqueLoop
 from tests.harness.identification.simulated import NOISE, T_S, P, found, simulated
 

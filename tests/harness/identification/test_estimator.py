@@ -9,19 +9,15 @@ from driveline.harness.identification import estimator
 from driveline.harness.identification.drive_train import Parameters
 from driveline.harness.identification.estimator import (
     HESITATES,
-    LEAST,
-    PRIORS,
     UNTOLD,
     WINDOW,
     Found,
-    before,
-    moved,
     search,
-    surprise,
 )
 from driveline.harness.identification.identify import FREE, NARROW, fit
 from driveline.harness.identification.model_inputs import LATEST
 from driveline.harness.identification.prediction import Predictor
+from driveline.harness.identification.priors import LEAST, PRIORS, before, moved, surprise
 from tests.harness.identification.simulated import BEHIND, NOISE, T_S, P, found, simulated
 
 SKEWED = P._replace(J_2=0.45, C=95.0, phi_B=0.09, d=0.02, late_T=-0.001, late_L=-0.0006)

@@ -1,6 +1,5 @@
 """Figures of an identified model: what they show, and that they remain the same."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -12,8 +11,8 @@ from matplotlib.figure import Figure
 from driveline.harness.identification import fit_figures
 from driveline.harness.identification.drive_train import STEPS
 from driveline.harness.identification.drive_train_response import FREQUENCIES, response
-from driveline.harness.identification.fit_figures import INSIDE, plot_certainty, plot_prediction, predicted
-from driveline.harness.identification.identify import WITHOUT_LOAD, Identified
+from driveline.harness.identification.fit_figures import INSIDE, plot_fit, predicted
+from driveline.harness.identification.identify import WITHOUT_LOAD
 from driveline.harness.identification.prediction import Predictor
 from driveline.harness.recordings.file_units import FileUnit
 from driveline.harness.recordings.measurement import Measurement
@@ -42,7 +41,7 @@ def test_the_figure_is_in_the_units_of_the_file_and_shows_the_window(
 ) -> None:
     figures: list[Figure] = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, path, **_: (figures.append(figure), path.touch()))
-    plot_prediction(identified(), recording(), tmp_path / "run", FigureOptions("", (101.1, 101.9), ("png",)))
+    plot_fit(identified(), recording(), tmp_path / "run", FigureOptions("", (101.1, 101.9), ("png",)))
     (figure,) = figures
     assert [axes.get_ylabel().replace("\n", " ") for axes in figure.axes] == [
         "motor speed in rpm",
@@ -50,9 +49,13 @@ def test_the_figure_is_in_the_units_of_the_file_and_shows_the_window(
         "wheel speed in km/h, over ground",
         "torque in kNm",
         "load torque in Nm, wheel side",
+        "motor speed over torque in dB",
+        "phase in degrees",
+        *(f"{name} off by, %" for name in ("$C$", "$\\varphi_B$", "$\\varphi_B$")),
     ]
-    assert all(axes.get_xlim() == (101.1, 101.9) for axes in figure.axes)
-    speed, _, wheels, torque, load = (np.asarray(axes.lines[0].get_ydata()) for axes in figure.axes)
+    over_time = figure.axes[:5]
+    assert all(axes.get_xlim() == (101.1, 101.9) for axes in over_time)
+    speed, _, wheels, torque, load = (np.asarray(axes.lines[0].get_ydata()) for axes in over_time)
     at = (recording().time >= 101.1) & (recording().time <= 101.9)
     assert speed == pytest.approx(recording().omega_1[at] * 30.0 / np.pi)
     assert wheels.max() == pytest.approx(recording().omega_2[at].max() / 9.0, rel=0.05)
@@ -108,20 +111,11 @@ def test_without_a_gap_the_recording_answers_as_the_model() -> None:
     assert drive.torque(0.0).shape == (20000, STEPS)
 
 
-Plot = Callable[[Identified, Measurement, Path], list[Path]]
-
-PLOTS: dict[str, Plot] = {
-    "prediction": lambda one, of, stem: plot_prediction(one, of, stem, FigureOptions("a caption")),
-    "certainty": lambda one, _, stem: plot_certainty(one, stem, FigureOptions("a caption")),
-}
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [None, WITHOUT_LOAD], ids=["with load", "without load"])
-@pytest.mark.parametrize("plot", PLOTS)
-def test_the_same_answer_gives_the_same_bytes(plot: str, name: str | None, tmp_path: Path) -> None:
+def test_the_same_answer_gives_the_same_bytes(name: str | None, tmp_path: Path) -> None:
     one = identified() if name is None else replace(identified(), name=name)
     of = recording() if name is None else replace(recording(), T_load=None, valid=None)
-    twice = [PLOTS[plot](one, of, tmp_path / stem) for stem in ("one", "two")]
+    twice = [plot_fit(one, of, tmp_path / stem, FigureOptions("a caption")) for stem in ("one", "two")]
     assert [[path.name for path in paths] for paths in twice] == [["one.png"], ["two.png"]]
     assert [path.read_bytes() for path in twice[0]] == [path.read_bytes() for path in twice[1]]
