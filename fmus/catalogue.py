@@ -13,16 +13,16 @@ from ..models.comparators import (
     linear_observer,
     no_damping,
     paper_observer,
-    perfect_state,
     speed_difference,
     speed_washout,
+    true_motion,
 )
 from .fmu import Fmu
 from .names import COMPARATORS
 
 _MODULES = (
     *(two_mass_driveline, validation_vehicle, motor_torque_loop, wheel_speed_can, damping_controller),
-    *(no_damping, speed_washout, speed_difference, paper_observer, linear_observer, perfect_state),
+    *(no_damping, speed_washout, speed_difference, paper_observer, linear_observer, true_motion),
 )
 
 EVERY: dict[str, Fmu] = {

@@ -2,7 +2,7 @@
 
 from ..models.controller import T_S as T_S
 
-COMPARATORS = ("NoDamping", "SpeedWashout", "SpeedDifference", "PaperObserver", "LinearObserver", "PerfectState")
+COMPARATORS = ("NoDamping", "SpeedWashout", "SpeedDifference", "PaperObserver", "LinearObserver", "TrueMotion")
 """Controllers that ours is compared with, in the order of the tables."""
 
 # the torque of the motor does not depend on its speed, so it is stepped first and then known over the step
@@ -24,5 +24,6 @@ RENAMED = {
     "haste": "demand_lead",
     "bounce": "landing_share",
     "brake": "landing_brake",
+    "PerfectState": "TrueMotion",
 }
-"""Parameters of the controllers that once had another name."""
+"""Parameters of the controllers, and one of these, that once had another name."""

@@ -18,7 +18,7 @@ from driveline.harness.studies.robustness.outcome import SHOWN
 from .study import Cell, Column, Measured, Study, Table, cell, number
 
 OURS = PLACES["controller"][0]
-MARK = "PerfectState"
+MARK = "TrueMotion"
 """No product: it sees the true motion."""
 
 CONTROLLERS = (OURS, *COMPARATORS)

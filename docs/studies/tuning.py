@@ -26,7 +26,7 @@ EVALUATIONS, SEED = 600, 1
 CHARACTERS = {"sport": 0.0, "0.25": 0.25, "balanced": 0.5, "0.75": 0.75, "comfort": 1.0}
 """What a driver may choose."""
 
-SEARCHED = tuple(name for name in COMPARATORS if name not in ("NoDamping", "PerfectState"))
+SEARCHED = tuple(name for name in COMPARATORS if name not in ("NoDamping", "TrueMotion"))
 """The others that have parameters of their own to search."""
 
 FEW = RUNS[:4]

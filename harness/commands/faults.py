@@ -5,7 +5,7 @@ judges each run: is the torque reference finite and limited, does the status say
 What fails, when, how much and for how long follows from the seed and the number of a case; half of the cases have two
 faults at a time. Beside each run stand two more with the same noise: without the fault, and without control. 840 cases
 have every kind of fault alone, in every situation, on both plants (420 on one); of the roads it takes 2664 (1332), of
-the starts 216 (108). The same command goes on where it was stopped. --case runs one case again, and writes its signals
+the starts 280 (140). The same command goes on where it was stopped. --case runs one case again, and writes its signals
 and draws them. The exit code is 1 if a case is not clean.
 
 examples:

@@ -51,7 +51,7 @@ TRUTH = (
     Connection("plant.phi", "controller.phi", "rad"),
     Connection("plant.T_gear", "controller.T_gear", "N.m"),
 )
-"""What the comparator PerfectState gets beside what is measured."""
+"""What the comparator TrueMotion gets beside what is measured."""
 
 INPUTS = (
     Port("controller.T_driver", "N.m"),

@@ -180,7 +180,7 @@ def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes])
     files = _files(made, made.build or chosen_build(made))
     return System(
         instances=files,
-        connections=CONNECTIONS + (TRUTH if files["controller"].stem == "PerfectState" else ()),
+        connections=CONNECTIONS + (TRUTH if files["controller"].stem == "TrueMotion" else ()),
         inputs=INPUTS,
         parameters=PARAMETERS,
         outputs=OUTPUTS,

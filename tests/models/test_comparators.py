@@ -14,10 +14,10 @@ from driveline.models.comparators import (
     measured_speeds,
     no_damping,
     paper_observer,
-    perfect_state,
     speed_difference,
     speed_washout,
     state_feedback,
+    true_motion,
 )
 from driveline.models.controller import T_S, supervision, torque_estimator
 from driveline.models.controller.interfaces import Motion
@@ -147,7 +147,7 @@ def test_the_linear_observer_is_ours_without_a_gap() -> None:
     [
         (paper_observer.BLOCK, [*LITERAL, "k_gap", *state_feedback.NO_LANDING]),
         (linear_observer.BLOCK, LINEAR),
-        (perfect_state.BLOCK, ["L_phi", "Ls_phi", "L_can_phi", "T_age"]),
+        (true_motion.BLOCK, ["L_phi", "Ls_phi", "L_can_phi", "T_age"]),
     ],
     ids=lambda value: getattr(value, "name", ""),
 )
@@ -156,28 +156,28 @@ def test_what_is_fixed_cannot_be_set(block: Any, names: Any) -> None:
 
 
 def informed(inputs: list[Input], **truth: float) -> list[Any]:
-    """Inputs of PerfectState, for which the motor turns faster and faster than the wheels."""
+    """Inputs of TrueMotion, for which the motor turns faster and faster than the wheels."""
     motion_of_plant = {"omega_1": 150.0, "omega_2": 140.0, "phi": 0.5, "T_gear": 40.0} | truth
-    return [perfect_state.BLOCK.Input(*u)._replace(**motion_of_plant) for u in inputs]
+    return [true_motion.BLOCK.Input(*u)._replace(**motion_of_plant) for u in inputs]
 
 
 def test_perfect_signals_are_fed_back_as_they_are() -> None:
     """Against what was fed back at the start: half the motor torque of 50.1 N.m."""
-    states = run(perfect_state.BLOCK, informed(shaken(0.1)), T_pred=0.0, k_d=1.0, k_T=0.5, omega_w=0.0)
+    states = run(true_motion.BLOCK, informed(shaken(0.1)), T_pred=0.0, k_d=1.0, k_T=0.5, omega_w=0.0)
     assert [x.T_damp for x in states[1:]] == pytest.approx([0.5 * 50.1 - (10.0 + 0.5 * 40.0)] * 50, abs=1e-9)
 
 
 def test_what_is_measured_changes_nothing_of_what_perfect_signals_damp() -> None:
-    calm, noisy = (run(perfect_state.BLOCK, informed(inputs)) for inputs in (drive_inputs(0.2), shaken(0.2)))
+    calm, noisy = (run(true_motion.BLOCK, informed(inputs)) for inputs in (drive_inputs(0.2), shaken(0.2)))
     assert torques(calm) == torques(noisy)
 
 
 def test_in_the_gap_the_twist_is_the_true_one_and_beyond_it_that_of_the_gear_torque() -> None:
-    p = perfect_state.BLOCK.Parameters()
-    e = perfect_state.MODEL.start(150.0, 50.0, False, p)
+    p = true_motion.BLOCK.Parameters()
+    e = true_motion.MODEL.start(150.0, 50.0, False, p)
     for phi, T_gear, expected in ((0.1, 0.0, 0.1), (0.9, 11.74, p.phi_B + 0.1), (-0.9, -11.74, -p.phi_B - 0.1)):
         (u,) = informed([Input()], phi=phi, T_gear=T_gear)
-        motion = perfect_state.MODEL.motion(perfect_state.with_true_motion(e, u, p), p)
+        motion = true_motion.MODEL.motion(true_motion.with_true_motion(e, u, p), p)
         assert motion.phi == pytest.approx(expected, rel=1e-12)
         assert motion.T_gear == pytest.approx(T_gear, rel=1e-12)
 
@@ -185,7 +185,7 @@ def test_in_the_gap_the_twist_is_the_true_one_and_beyond_it_that_of_the_gear_tor
 @pytest.mark.parametrize("name", ["omega_1", "omega_2", "phi", "T_gear"])
 @pytest.mark.parametrize("value", [math.nan, math.inf, -1e308])
 def test_a_truth_that_is_none_ends_in_no_torque_that_is_none(name: str, value: float) -> None:
-    for x in run(perfect_state.BLOCK, informed(shaken(0.05), **{name: value})):
+    for x in run(true_motion.BLOCK, informed(shaken(0.05), **{name: value})):
         assert abs(x.T_damp) <= supervision.Parameters().T_take_max
 
 

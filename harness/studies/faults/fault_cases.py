@@ -109,9 +109,18 @@ _ROADS = {
 }
 
 
+_REVERSE = Manoeuvre(
+    name="reverse",
+    description="pull away backwards, let go of the pedal, and a tip-in through the backlash",
+    duration=DURATION,
+    v_0=0.0,
+    T_driver=lines((0.1, 0.0), (0.2, -100.0), (1.2, -100.0), (1.3, 12.0), (2.0, 12.0), (2.0, -100.0)),
+    t_0=2.0,
+)
+
 _STARTS = {
-    f"starts in {name}": Situation(f"starts in {name}", MANOEUVRES[name].description, _short(name), 0.0, 0.0)
-    for name in ("tipin15", "tipin50", "tipout", "creep", "one_pedal_soft", "regen")
+    f"starts in {each.name}": Situation(f"starts in {each.name}", each.description, each, 0.0, 0.0)
+    for each in (*map(_short, ("tipin15", "tipin50", "tipout", "creep", "one_pedal_soft", "regen")), _REVERSE)
 }
 
 

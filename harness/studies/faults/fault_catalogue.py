@@ -12,6 +12,9 @@ MOTOR_SPEED, MOTOR_TORQUE, WHEEL_SPEED, FRAME = 1, 2, 3, 4
 LATE, FROZEN, LOST, GAIN, OFFSET, NOISE, SPIKES, NO_NUMBER, FLAPPING, JUMPING = range(1, 11)
 """What can happen to them, as SignalFaults numbers it."""
 
+SWITCHED_OFF = 11
+"""What can happen to the damping beside: `enable` is not set."""
+
 ICE = 0.1
 """Friction coefficient of ice."""
 
@@ -44,8 +47,8 @@ class Kind:
     """One thing that can go wrong.
 
     Attributes:
-        signal, number: which signal and what happens to it, as SignalFaults numbers them; 0 for what is no fault of a
-            signal.
+        signal, number: which signal and what happens to it, as SignalFaults numbers them, or SWITCHED_OFF; 0 for what
+            is no fault of a signal.
         size, share: of the fault, drawn anew for each case.
         meaning: of the size, with its unit.
         unit: of the size where it has one.
@@ -178,6 +181,7 @@ AT_STARTS = {
             "first messages zero", WHEEL_SPEED, GAIN, "the wheel speed reads 0", fixed(0.0), lasts=LASTS, tolerable=True
         ),
         Kind("no first messages", WHEEL_SPEED, LOST, "none arrives from the start on", lasts=LASTS, tolerable=True),
+        Kind("enabled late", 0, SWITCHED_OFF, "the damping is switched on at speed", lasts=LASTS, tolerable=True),
     )
 }
 """What first samples can be: of a host that exchanges nothing before its first step, or of a control unit that starts

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,12 +17,13 @@ from ...cosimulation.wiring import Fit, fit
 from ...loop.settings import Settings, loop, running
 from ...loop.stale_fmus import warn_of_stale
 from ...manoeuvres.manoeuvre import Manoeuvre
-from ...manoeuvres.signals import Signal, lines
+from ...manoeuvres.parts import Sum
+from ...manoeuvres.signals import lines
 from ...metrics.evaluate import at_samples
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
 from ...simulation.simulate import signals, start
 from .fault_cases import SITUATIONS, Case, Fault
-from .fault_catalogue import ICE, LOCK, SPIN
+from .fault_catalogue import ICE, LOCK, SPIN, SWITCHED_OFF
 
 INSTANCE = "faults"
 """Name of SignalFaults in the loop."""
@@ -152,7 +154,11 @@ class FaultRunner:
         parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise)
         settings = running(self._settings[plant].replace(control=control))
         parameters |= dict(settings.parameters) | _parameters(faults, noise)
-        given = {"inputs": signals(manoeuvre, control), "parameters": parameters, "label": manoeuvre.name}
+        inputs = signals(manoeuvre, control)
+        for fault in faults:
+            if fault.kind.number == SWITCHED_OFF:
+                inputs["controller.enable"] = partial(np.less_equal, fault.end)
+        given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
         system = with_faults(loop(settings), self._injector)
         return _completed(at_samples(run(system, Experiment(manoeuvre.duration, **given))))
 
@@ -202,7 +208,7 @@ def with_faults(system: System, injector: Path) -> System:
 def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
     """Of SignalFaults."""
     given: dict[str, float] = {f"{INSTANCE}.seed": seed}
-    for k, fault in enumerate(faults, 1):
+    for k, fault in enumerate((fault for fault in faults if fault.kind.signal), 1):
         values = {
             "kind": fault.kind.number,
             "signal": fault.kind.signal,
@@ -227,18 +233,7 @@ def _with(on_ice: Sequence[Fault], manoeuvre: Manoeuvre) -> Manoeuvre:
     for fault in on_ice:
         pulse = lines((fault.begin, 0.0), (fault.begin, fault.size), (fault.end, fault.size), (fault.end, 0.0))
         if fault.name == LOCK:
-            manoeuvre = replace(manoeuvre, T_brake=Sum(manoeuvre.T_brake, pulse))
+            manoeuvre = replace(manoeuvre, T_brake=Sum((manoeuvre.T_brake, pulse)))
         elif fault.name == SPIN:
-            manoeuvre = replace(manoeuvre, T_driver=Sum(manoeuvre.T_driver, pulse))
+            manoeuvre = replace(manoeuvre, T_driver=Sum((manoeuvre.T_driver, pulse)))
     return manoeuvre
-
-
-@dataclass(frozen=True)
-class Sum:
-    """The sum of two signals."""
-
-    first: Signal
-    second: Signal
-
-    def __call__(self, t: Any) -> np.ndarray:
-        return self.first(t) + self.second(t)

@@ -14,6 +14,7 @@ from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.names import COMPARATORS
 from driveline.fmus.python.packaging import build
 from driveline.harness.base.collected_warnings import warn_once
+from driveline.harness.base.errors import WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.loop import built_fmus, fmu_cache, places
 from driveline.harness.loop.places import NATIVE
@@ -46,7 +47,7 @@ def test_they_are_no_part_of_the_product() -> None:
     assert EVERY.keys() == {name for names in places.PLACES.values() for name in names}
 
 
-@pytest.mark.parametrize("name", slow(COMPARATORS, but=["NoDamping", "PerfectState"]))
+@pytest.mark.parametrize("name", slow(COMPARATORS, but=["NoDamping", "TrueMotion"]))
 def test_both_builds_are_alike_and_damp(name: str, folder: Path, native_builder: Any) -> None:
     """One test, since each native build takes a while."""
     native_builder(EVERY[name], folder)
@@ -67,15 +68,17 @@ def test_only_perfect_signals_come_from_the_plant() -> None:
         fed = {c.target for c in loop(controller=name).connections} - {c.target for c in loop().connections}
         inputs = {v.name for v in variables(EVERY[name].block.Input)} - {v.name for v in variables(supervision.Input)}
         assert fed == {f"controller.{variable}" for variable in inputs}
-        assert bool(fed) == (name == "PerfectState")
-    by_path = loop(controller=Path("elsewhere") / "PerfectState.fmu")
-    assert by_path.connections == loop(controller="PerfectState").connections
+        assert bool(fed) == (name == "TrueMotion")
+    by_path = loop(controller=Path("elsewhere") / "TrueMotion.fmu")
+    assert by_path.connections == loop(controller="TrueMotion").connections
+    with pytest.raises(WiringError, match="unknown controller PerfectState; it is called TrueMotion now"):
+        loop(controller="PerfectState")
 
 
 def test_what_is_told_is_the_plant_s_motion(folder: Path) -> None:
-    build(EVERY["PerfectState"], folder)
+    build(EVERY["TrueMotion"], folder)
     short = replace(TIPIN, duration=0.1)
-    results = simulate(short, controller="PerfectState", folder=folder, build="python")
+    results = simulate(short, controller="TrueMotion", folder=folder, build="python")
     assert results["controller.T_gear_hat"][50:] == pytest.approx(results["plant.T_gear"][50:], abs=1.0)
 
 

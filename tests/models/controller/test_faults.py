@@ -99,3 +99,26 @@ def test_a_launch_with_a_motor_speed_of_the_wrong_sign_does_not_shake_the_gear(
     assert set(y["controller.cause"][fallback]) == {WRONG_LAUNCH}
     shaken, usual = (band_rms(run["plant.T_gear"], monolithic.INTERVAL) for run in (y, alone))
     assert shaken < 1.2 * usual
+
+
+@both_plants
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_damping_that_is_switched_on_at_speed_acts_as_one_that_was_always_on(
+    plant: ContinuousBlock, way: float
+) -> None:
+    """In a tip-in half a second later, forwards and backwards."""
+    demand = ([0.1, 0.2, 1.0, 1.1, 1.5 - 1e-9, 1.5], [0.0, 100.0, 100.0, -12.0, -12.0, 100.0])
+
+    def signals(k: int) -> tuple[float, float, float]:
+        return way * float(np.interp(k * monolithic.INTERVAL, *demand)), 0.0, 0.0
+
+    def swing(enabled_from: float) -> float:
+        def received(t: float, sent: Any) -> Any:
+            return sent._replace(enable=t >= enabled_from)
+
+        y = monolithic.run(plant, signals, 2.2, {"plant": {"v_0": 0.0}}, received=received)
+        return band_rms(y["plant.T_gear"][y["time"] >= 1.5], monolithic.INTERVAL)
+
+    late, always, never = map(swing, (1.0, 0.0, 9.0))
+    assert late == pytest.approx(always, rel=0.05)
+    assert late < 0.7 * never

@@ -25,7 +25,7 @@ from tests.slow import slow
 
 CONTROLLERS = {name: fmu.block for name, fmu in EVERY.items() if isinstance(fmu.block, SampledBlock)}
 
-FEEDING_BACK = ("DampingController", "SpeedWashout", "SpeedDifference", "PaperObserver", "PerfectState")
+FEEDING_BACK = ("DampingController", "SpeedWashout", "SpeedDifference", "PaperObserver", "TrueMotion")
 """The linear observer is ours as long as the teeth are in contact."""
 
 POINTS = {name: Point(controller=CONTROLLERS[name]) for name in FEEDING_BACK}

@@ -1,7 +1,8 @@
-"""Our law with perfect signals: what knowing the plant's own motion would be worth. A mark, and no product.
+"""Our law at the plant's true motion: what the estimator costs, or gains, at these gains. A mark, and no product.
 
 The law is told the plant's true motion, and T_pred ahead what the estimator's model makes of that. The
-supervision has the measured signals, as ever.
+supervision has the measured signals, as ever. It is no limit of what can be reached: the gains are those that were
+found together with the estimator.
 """
 
 from dataclasses import replace
@@ -62,7 +63,7 @@ _CONTROLLER = WithTrueMotion(MODEL, damping_law)
 
 BLOCK = replace(
     supervised(
-        name="PerfectState",
+        name="TrueMotion",
         description="Mark: our damping law, told the plant's true motion",
         module=__name__,
         estimator=MODEL,
