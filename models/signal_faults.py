@@ -17,12 +17,11 @@ fault the signals pass as they are, within the same instant.
     jumping    of the message: its counter is any number in this share of the samples
 """
 
-from collections.abc import Sequence
 from typing import Annotated, NamedTuple
 
 from .block.declaration import Boolean, Integer, Real
 from .block.noise import normals, uniform
-from .block.operators import LARGEST, branch, clip, floor, logical_and, logical_not, logical_or, maximum, where
+from .block.operators import LARGEST, branch, clip, element, floor, logical_and, logical_not, logical_or, maximum, where
 from .block.types import SampledBlock
 from .controller import T_S
 
@@ -98,9 +97,18 @@ class Sent(NamedTuple):
     counter: Annotated[int, Integer("counter of the message")]
 
 
+class Past(NamedTuple):
+    """What was sent in the last samples, newest first."""
+
+    speed: Annotated[tuple[float, ...], Real("rad/s", "of the motor; of the wheels for a fault of the message")]
+    torque: Annotated[tuple[float, ...], Real("N.m", "of the motor")]
+    valid: Annotated[tuple[bool, ...], Boolean("flag of the message")]
+    counter: Annotated[tuple[int, ...], Integer("counter of the message")]
+
+
 class State(NamedTuple):
     sample: Annotated[float, Real("1", "number of the sample")]
-    past: Annotated[tuple[Sent, ...], Real("1", "what was sent, newest first")]
+    past: Past
     late: Sent
     last_1: Sent
     last_2: Sent
@@ -117,16 +125,18 @@ def start(u: Input, p: Parameters) -> State:
     """What is sent at the start counts as what was sent before."""
     first, second = faults(p)
     sent = _sent(u, _late_one(p))
-    return State(0.0, (sent,) * HISTORY, sent, _sent(u, first), _sent(u, second))
+    past = Past(*((value,) * HISTORY for value in sent))
+    return State(0.0, past, sent, _sent(u, first), _sent(u, second))
 
 
 def update(x: State, u: Input, p: Parameters) -> State:
     late, (first, second) = _late_one(p), faults(p)
-    recent = (_sent(u, late), *x.past[:-1])
+    sent, samples = _sent(u, late), clip(floor(late.size / T_S - 0.5), 0.0, HISTORY - 1.0)
+    before = Sent(*(element(values, samples - 1.0) for values in x.past))
     return State(
         sample=x.sample + 1.0,
-        past=recent,
-        late=_at(recent, clip(floor(late.size / T_S - 0.5), 0.0, HISTORY - 1.0)),
+        past=Past(*((new, *old[:-1]) for new, old in zip(sent, x.past, strict=True))),
+        late=_chosen(samples < 1.0, sent, before),
         last_1=_chosen(stays(first, u, x.sample, p), x.last_1, _sent(u, first)),
         last_2=_chosen(stays(second, u, x.sample, p), x.last_2, _sent(u, second)),
     )
@@ -234,17 +244,6 @@ def _strikes(fault: Fault, counter: float, sample: float, p: Parameters) -> bool
 
 def _chosen(condition: bool, value: Sent, otherwise: Sent) -> Sent:
     return branch(condition, lambda: value, lambda: otherwise)
-
-
-def _at(recent: Sequence[Sent], position: float) -> Sent:
-    """The element at a whole position; the last one beyond it."""
-    left = position
-    while len(recent) > 1:
-        odd = left % 2.0 == 1.0
-        pairs = zip(recent[::2], [*recent[1::2], recent[-1]][: len(recent[::2])], strict=True)
-        recent = [_chosen(odd, second, first) for first, second in pairs]
-        left = floor(0.5 * left)
-    return recent[0]
 
 
 BLOCK = SampledBlock(

@@ -3,6 +3,7 @@
 import io
 import textwrap
 from collections.abc import Iterator
+from functools import cache
 from html import escape
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
@@ -146,6 +147,7 @@ COLOURS = 32
 WIDTH, MARGIN, ARROW = 4.2, 0.2, 0.3
 
 
+@cache  # both builds have it
 def picture(block: Block) -> bytes:
     """The picture as PNG; the same block gives the same bytes."""
     inputs, outputs = block.Input._fields, block.Output._fields

@@ -27,6 +27,9 @@ def constant(value: float, precision: Precision) -> str:
     return repr(min(max(value, -precision.largest), precision.largest)) + precision.constant
 
 
+LOOPED = 8
+"""Elements of an array from which on a loop assigns them."""
+
 LONGEST = 80
 """Characters of an expression; longer ones are given a name."""
 
@@ -60,6 +63,18 @@ class Text(NamedTuple):
         return self.text if self.strength == strength or self.strength >= max(strength, SIGN) else f"({self.text})"
 
 
+def _place(name: str, further: int = 0) -> tuple[str, int]:
+    """The array of a number in C, and its place there or so many places further."""
+    array, _, place = name.rpartition("[")
+    return (array, int(place[:-1]) + further) if place[:-1].isdecimal() else (name, further)
+
+
+def _counted(name: str) -> str:
+    """The element of an array that is `k` places after one."""
+    array, place = _place(name)
+    return f"{array}[k + {place}]" if place else f"{array}[k]"
+
+
 class Statements:
     """Writes the operations of a graph in the order in which the outputs need them.
 
@@ -81,9 +96,42 @@ class Statements:
         self._indent = "    "
         self._texts: dict[int, Text] = {}
         self.lines: list[str] = []
-        for element, k in sorted(graph.outputs.items()):
+        elements = sorted(graph.outputs)
+        while elements:
+            count, moves = self._loop(elements, outputs)
+            name, k = outputs[elements[0]], graph.outputs[elements[0]]
             self._need(k, frozenset())
-            self._line(f"{outputs[element]} = {self._number(k).text};")
+            if count > 1:
+                value = _counted(self._input(k)) if moves else self._number(k).text
+                self.lines += [
+                    f"    for (int k = 0; k < {count}; k++) {{",
+                    f"        {_counted(name)} = {value};",
+                    "    }",
+                ]
+            else:
+                self._line(f"{name} = {self._number(k).text};")
+            del elements[:count]
+
+    def _loop(self, elements: Sequence[int], outputs: Sequence[str]) -> tuple[int, bool]:
+        """How many of the elements of the output a loop can assign, 1 if it is not worth one: they follow each other
+        in an array. Their values do so too, in an array of the input, or else are one value."""
+        first = self._graph.outputs[elements[0]]
+        for moves in (False, True):
+            count = 0
+            for element in elements:
+                k = self._graph.outputs[element]
+                same = _place(self._input(k)) == _place(self._input(first), count) if moves else k == first
+                if not (same and _place(outputs[element]) == _place(outputs[elements[0]], count)):
+                    break
+                count += 1
+            if count >= LOOPED:
+                return count, moves
+        return 1, False
+
+    def _input(self, k: int) -> str:
+        """What C calls a node of the input; nothing for others."""
+        node = self._graph.nodes[k]
+        return self._graph.inputs[node.place[0]][node.place[1]] if node.operation == "INPUT" else ""
 
     @staticmethod
     def is_not_zero(number: str) -> str:

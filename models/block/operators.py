@@ -180,15 +180,22 @@ def floor(x: float) -> float:
         return symbol(x).floor()
 
 
+def element(values: Sequence[Number], position: float) -> Number:
+    """The value at the whole part of a position; the first or the last one beyond either end."""
+    if position.__class__ is float:
+        return values[min(max(int(position), 0), len(values) - 1)]
+    found = values[0]
+    for k, value in enumerate(values[1:], 1):
+        found = where(position >= float(k), value, found)
+    return found
+
+
 def interpolate(values: Sequence[float], position: float) -> float:
     """Linear interpolation between values[0], values[1], ...; held beyond either end."""
     position = clip(position, 0.0, len(values) - 1.0)
     if position.__class__ is float:
         left = min(int(position), len(values) - 2)
         return values[left] + (position - left) * (values[left + 1] - values[left])
-    start, left, right = 0.0, values[0], values[1]
-    for k in range(1, len(values) - 1):
-        beyond = position >= float(k)
-        start = where(beyond, float(k), start)
-        left, right = where(beyond, values[k], left), where(beyond, values[k + 1], right)
+    start = element([float(k) for k in range(len(values) - 1)], position)
+    left, right = element(values[:-1], position), element(values[1:], position)
     return left + (position - start) * (right - left)

@@ -6,19 +6,19 @@ from typing import Any
 import numpy as np
 
 from driveline.fmus.native.arithmetic import COMPUTED, Node, Recording, TracedGraph, TracedSymbol, node_of
-from driveline.fmus.native.trace import Traced
+from driveline.fmus.native.trace import Traced, leaves
 
 
 def recorded(of: Callable[..., Any], *vectors: Sequence[str]) -> TracedGraph:
-    """Those of a function of as many numbers as these vectors have names in C."""
+    """Those of a function of as many numbers as these vectors have names in C; it gives one number or many."""
     recording = Recording()
     symbols = [
         TracedSymbol(recording, recording.number(Node("INPUT", (), (vector, element))))
         for vector, names in enumerate(vectors)
         for element in range(len(names))
     ]
-    value = node_of(of(*symbols), recording)
-    return TracedGraph(recording, [value], range(len(vectors)), vectors)
+    values = [node_of(value, recording) for value in leaves((of(*symbols),))]
+    return TracedGraph(recording, values, range(len(vectors)), vectors)
 
 
 def computed(function: Traced, *arguments: Sequence[float]) -> list[float]:

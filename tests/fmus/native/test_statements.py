@@ -5,7 +5,7 @@ from typing import Any
 
 from driveline.fmus.native.arithmetic import LOOKED_UP
 from driveline.fmus.native.lanes import LANES, LaneStatements
-from driveline.fmus.native.statements import Statements
+from driveline.fmus.native.statements import LOOPED, Statements
 from driveline.fmus.symbol import Symbol
 from driveline.models.block import operators
 from driveline.models.block.operators import interpolate, logical_and, sin, where
@@ -26,6 +26,24 @@ def test_an_interpolation_in_an_array_looks_its_neighbours_up() -> None:
     assert index.endswith("4 : ((1.0 <= a2) ? (int)a2 : 0);")
     assert not any("a[2]" in line for line in lines)
     assert lines[-1] == "y = a4 + ((a2 - (double)a3) * (a[a3 + 1] - a4));"
+
+
+def test_a_loop_assigns_what_follows_each_other_in_arrays() -> None:
+    def lines(names: list[str], of: Callable[..., Any] = lambda *v: v) -> list[str]:
+        outputs = [f"y[{k + 1}]" for k in range(len(names))]
+        return [line.strip() for line in Statements(recorded(of, names), outputs).lines]
+
+    many, few = ([f"a.b[{k}]" for k in range(count)] for count in (LOOPED, LOOPED - 1))
+    loop = f"for (int k = 0; k < {LOOPED}; k++) {{"
+    assert lines(many) == [loop, "y[k + 1] = a.b[k];", "}"]
+    assert lines(many, lambda *v: (sin(v[0]),) * LOOPED) == [
+        "const double a1 = sin(a.b[0]);",
+        loop,
+        "y[k + 1] = a1;",
+        "}",
+    ]
+    for others in (few, [*few, "c"], [*few, "a.b[0]"]):
+        assert len(lines(others)) == len(others)
 
 
 def test_numbers_that_are_no_array_are_chosen_one_by_one() -> None:

@@ -47,6 +47,7 @@ def test_what_is_not_finite_is_told_and_limited(x: float) -> None:
 def test_interpolation_is_linear_and_held_beyond_the_ends(values: list[float], position: float) -> None:
     expected = float(np.interp(position, range(len(values)), values))
     assert operators.interpolate(values, position) == pytest.approx(expected, rel=1e-9, abs=1e-6)
+    assert operators.element(values, position) == values[min(max(int(position), 0), len(values) - 1)]
 
 
 def test_a_costly_branch_is_only_taken_when_needed() -> None:
