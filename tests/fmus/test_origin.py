@@ -1,5 +1,6 @@
 """What an FMU tells of its making, and what is built again for it."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -41,6 +42,19 @@ def test_what_is_missing_or_stale_is_built_and_nothing_else(tmp_path: Path, late
     assert is_stale(path)
     assert refreshed([NAME], tmp_path, "python") == [path]
     assert not is_stale(path)
+
+
+def test_the_digests_of_the_last_states_of_the_sources_are_kept(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(origin, "MOST_KEPT", 2)
+    monkeypatch.setattr(origin, "ROOT", tmp_path)
+    monkeypatch.setattr(origin, "user_cache", lambda: tmp_path)
+    source, digests = tmp_path / "block.py", []
+    for k in range(4):
+        source.write_text(f"x = {k}\n")
+        digests.append(origin.code_digest([source]))
+        newest = max((tmp_path / "sources").iterdir(), key=lambda path: path.stat().st_mtime)
+        os.utime(newest, (k, k))  # further from the next one than a clock tells apart
+    assert {path.read_text().split()[0] for path in (tmp_path / "sources").iterdir()} == set(digests[-2:])
 
 
 @pytest.mark.slow

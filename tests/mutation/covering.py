@@ -29,14 +29,17 @@ IN_C = {
 }
 """The tests of files of the C core that find their faults before those of the calls do."""
 
+LAST = {"models/": "tests/docs/studies/test_study.py", "fmus/description/": "tests/fmus/native/test_fmi3.py"}
+"""By folder: for models the sentinels of the studies, for descriptions what a validator says of one of FMI 3.0."""
+
 
 def rounds(file: str) -> list[list[str]]:
     """Files of tests in the order in which they are run: those of the file itself, those that import it, those that
-    belong to what imports it, all of the room, and for a model the sentinels of the studies."""
+    belong to what imports it, all of the room, and those of LAST."""
     path, found = Path(file), []
     if path.suffix == ".py":
-        sentinels = ["tests/docs/studies/test_study.py"] if file.startswith("models/") else []
-        stages = [own(file), importing(path), near(path), room(path), sentinels]
+        last = [tests for folder, tests in LAST.items() if file.startswith(folder)]
+        stages = [own(file), importing(path), near(path), room(path), last]
     else:
         stages = [[name for name in IN_C.get(path.stem, ()) if (ROOT / name).exists()], list(CALLS)]
     for names in stages:

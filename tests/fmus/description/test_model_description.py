@@ -15,6 +15,7 @@ from fmpy.validation import validate_fmu
 from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.description.build_kind import BuildKind
 from driveline.fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
+from driveline.fmus.description.documentation import tables
 from driveline.fmus.description.model_description import model_description
 from driveline.fmus.description.units import base_exponents
 from driveline.fmus.description.variables import interface
@@ -92,29 +93,37 @@ def test_an_unknown_unit_is_named():
         base_exponents("lbf.ft")
 
 
+class Chosen(NamedTuple):
+    on: Annotated[bool, Boolean("choose")] = False
+
+
+class Two(NamedTuple):
+    a: Annotated[float, Real("1", "one")] = 0.0
+    b: Annotated[float, Real("1", "another")] = 0.0
+
+
+CHOICE = ContinuousBlock(
+    name="Choice",
+    description="",
+    module=__name__,
+    Parameters=Chosen,
+    Input=Two,
+    State=Two,
+    Output=Two,
+    start=lambda u, p: Two(),
+    output=lambda x, u, p: Two(where(p.on, where(p.on, 0.0, u.a), u.b), where(p.on, u.a, u.b)),
+    derivative=lambda x, u, p: Two(),
+    step_size=0.001,
+)
+
+
 def test_what_a_boolean_parameter_chooses_and_bars_is_no_dependency_but_the_parameter_is_one():
-    class Chosen(NamedTuple):
-        on: Annotated[bool, Boolean("choose")] = False
+    assert output_dependencies(CHOICE) == {"a": {"b"}, "b": {"a", "b"}}
+    assert initial_dependencies(CHOICE) == {"a": {"on", "b"}, "b": {"on", "a", "b"}}
 
-    class Two(NamedTuple):
-        a: Annotated[float, Real("1", "one")] = 0.0
-        b: Annotated[float, Real("1", "another")] = 0.0
 
-    block = ContinuousBlock(
-        name="Choice",
-        description="",
-        module=__name__,
-        Parameters=Chosen,
-        Input=Two,
-        State=Two,
-        Output=Two,
-        start=lambda u, p: Two(),
-        output=lambda x, u, p: Two(where(p.on, where(p.on, 0.0, u.a), u.b), where(p.on, u.a, u.b)),
-        derivative=lambda x, u, p: Two(),
-        step_size=0.001,
-    )
-    assert output_dependencies(block) == {"a": {"b"}, "b": {"a", "b"}}
-    assert initial_dependencies(block) == {"a": {"on", "b"}, "b": {"on", "a", "b"}}
+def test_the_tables_have_a_row_for_each_variable_also_for_one_alone():
+    assert {title: len(rows) - 1 for title, rows in tables(CHOICE)} == {"Inputs": 2, "Outputs": 2, "Parameters": 1}
 
 
 @every_fmu
