@@ -9,19 +9,27 @@ it, so k_s is no part of C alone. What a file does not name follows from what it
     J_w, J_g        from J_2 i^2, in proportion
     F_z0, J_y, ...  from m, in proportion: pitch and hubs keep their frequencies
     d_s, d_g, d_p   damping ratios stay
+    J_1, J_2, C, phi_B, c_slip   estimated from T_max, i, r, m (estimates), where none of the others tells them
 
-An entry of its own stands. Where two entries say different things of the same, the file is refused.
+What an engineer measures of the whole car may stand in the place of what a block takes (Measured): C follows from the
+frequency, d_s, d_g, d_p from the damping ratio, phi_B from the gap. An entry of its own stands. Where two entries say
+different things of the same, the file is refused.
 """
 
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from math import exp, log, sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from ...models import two_mass_driveline, validation_vehicle
+from ...models import motor_torque_loop, two_mass_driveline, validation_vehicle
+from ...models.block.declaration import Real, variables
 from ...models.block.types import ContinuousBlock
-from ..description.variables import interface
+from ..description.variables import Variable, interface
 from ..errors import ParameterFileError
+from .estimates import LAWS, estimated
+
+if TYPE_CHECKING:
+    from .oscillation import Oscillation
 
 SHAFTS = ("k_s", "k_g", "k_p")
 """What is elastic between motor and wheels in the validation vehicle: half shafts, gear stage, mounts."""
@@ -50,7 +58,22 @@ FURTHEST = 100.0
 SECANTS, NEAR = 8, 1e-6
 """Steps in which it is found, and the last of them; what is missed after one is far less."""
 
-DESIGN, DETAILED = two_mass_driveline.BLOCK, validation_vehicle.BLOCK
+LEAST_DAMPING = 1e-3
+"""Factor on what damps in the default car, from which on a damping ratio is looked for; up to FURTHEST."""
+
+DESIGN, DETAILED, MOTOR = two_mass_driveline.BLOCK, validation_vehicle.BLOCK, motor_torque_loop.BLOCK
+
+
+class Measured(NamedTuple):
+    """What is measured of a whole car, with its drive train in contact, rolling at 15 km/h without control."""
+
+    frequency: Annotated[float, Real("Hz", "at which the drive train swings, in the place of C", 0.3, 30.0)]
+    damping_ratio: Annotated[float, Real("1", "of that swing, in the place of d_s, d_g, d_p", 0.005, 0.5)]
+    gap: Annotated[float, Real("rad", "at the wheel from flank to flank, in the place of phi_B", 0.0, 1.0)]
+
+
+MEASURED = {each.name: Variable(-1, each.name, "parameter", each.declaration, None) for each in variables(Measured)}
+"""How they are declared."""
 
 DECLARED = {
     variable.name: (block.name, variable)
@@ -62,6 +85,16 @@ DECLARED = {
 
 DEFAULT_CAR: Mapping[str, float] = {name: variable.start for name, (_, variable) in DECLARED.items()}
 """The default car."""
+
+OF_CAR = {
+    **DECLARED,
+    **{name: ("a vehicle file", variable) for name, variable in MEASURED.items()},
+    **{each.name: (MOTOR.name, each) for each in interface(MOTOR) if each.name == "T_max"},
+}
+"""All from which something follows."""
+
+INSTEAD = {"frequency": ("C", *SHAFTS), "damping_ratio": tuple(DAMPERS), "gap": ("phi_B",)}
+"""What follows from what is measured, and is not given beside it."""
 
 
 def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, Any]:
@@ -75,9 +108,25 @@ def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, 
     Raises:
         ParameterFileError: entries disagree, are no numbers or out of bounds, or there is no such car.
     """
-    given = frozenset((name, _number(name, value)) for name, value in entries.items() if name in DECLARED)
-    followed = _common(given) | (_detailed(given) if set(taken) >= set(FOLLOW) else {})
-    return {**entries, **followed}
+    given = {name: _number(name, value) for name, value in entries.items() if name in OF_CAR}
+    followed = _common(frozenset(given.items()))
+    if set(taken) >= set(FOLLOW):
+        try:
+            followed = followed | _detailed(frozenset({**given, **followed}.items()))
+        except ParameterFileError as problem:
+            guessed = [name for name in followed if name in LAWS]
+            raise ParameterFileError(f"{problem}{'; not given: ' if guessed else ''}{', '.join(guessed)}") from problem
+    return {**{name: value for name, value in entries.items() if name not in MEASURED}, **followed}
+
+
+def with_estimates(entries: Mapping[str, Any]) -> dict[str, Any]:
+    """The entries of a vehicle file with all that is estimated or follows from what was measured: if one of them is
+    turned then, the others stay."""
+    measured = {name for by, names in INSTEAD.items() if by in entries for name in names}
+    usual = {name: DEFAULT_CAR[name] for name in LAWS if name != "C" or not any(k in entries for k in SHAFTS)}
+    full = of_one_car(entries, FOLLOW if measured else ())
+    kept = {name: full[name] for name in full if name in entries or name in {*LAWS, *measured} - {*SHAFTS}}
+    return usual | kept
 
 
 def updated(entries: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, Any]:
@@ -86,8 +135,8 @@ def updated(entries: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, A
     Args:
         known: entries that replace or add to those.
     """
-    stays = {name: value for name, value in entries.items() if "C" not in known or name not in SHAFTS}
-    return {**stays, **known}
+    replaced = {name for name, of in INSTEAD.items() if {*of} & known.keys()} | {*(SHAFTS if "C" in known else ())}
+    return {**{name: value for name, value in entries.items() if name not in replaced}, **known}
 
 
 def differences(entries: Mapping[str, Any], others: Mapping[str, Any], taken: Collection[str]) -> dict[str, Any]:
@@ -103,47 +152,85 @@ def differences(entries: Mapping[str, Any], others: Mapping[str, Any], taken: Co
 
 @cache
 def _common(given: frozenset[tuple[str, float]]) -> dict[str, float]:
-    """What follows for both plants and the design: C, if the file has what is elastic in detail instead."""
+    """What follows for both plants and the design: what no entry tells, as it is estimated; C, if the file has the
+    frequency or what is elastic in detail instead; phi_B from the gap."""
     car = dict(given)
     for name, value in given:
         _require_possible(name, value)
+    for name, of in INSTEAD.items():
+        if name in car and (both := [each for each in of if each in car]):
+            raise ParameterFileError(f"{_told(car, name, *both)}: leave one out, as {both[0]} follows from {name}")
+    elastic = any(name in car for name in SHAFTS)
+    elsewhere = {*(INSTEAD["gap"] if "gap" in car else ()), *(("C",) if elastic or "frequency" in car else ())}
+    found = {name: value for name, value in estimated(car).items() if name not in elsewhere}
+    bounds = {name: DECLARED[name][1].bounds() for name in found}
+    found = {name: min(max(value, bounds[name][0]), bounds[name][1]) for name, value in found.items()}
+    if "gap" in car:
+        found["phi_B"] = 0.5 * car["gap"] * car.get("i", DEFAULT_CAR["i"])
+        _require_possible("phi_B", found["phi_B"], f" with {_told(car, 'gap', 'i')}")
+    found = _others_than_usual(found)
+    car |= found
     _require_agreeing(car)
-    if not any(name in car for name in SHAFTS) or ("C" in car and "k_s" not in car):
-        return {}
-    wanted = _frequency(DETAILED, with_details(car, 1.0)) / frequencies_apart()
-    C = _solved(lambda C: _frequency(DESIGN, car | {"C": C}), wanted, *DECLARED["C"][1].bounds(), "C")
+
+    def frequency_with(C: float) -> float:
+        return _frequency(DESIGN, car | {"C": C})
+
+    if "frequency" in car:
+        wanted, what = car["frequency"] / frequencies_apart(), f"{_told(car, 'frequency', 'J_1', 'c_slip')}: C"
+    elif not elastic or ("C" in car and "k_s" not in car):
+        return found
+    else:
+        wanted, what = _frequency(DETAILED, with_details(car, 1.0)) / frequencies_apart(), "C"
+    C = _solved(frequency_with, wanted, *DECLARED["C"][1].bounds(), what)
     if "C" not in car:
-        return _others_than_usual({"C": C})
+        return found | _others_than_usual({"C": C})
     if not _close(_frequency(DESIGN, car), wanted):
         raise ParameterFileError(
             f"C = {car['C']:g} N.m/rad and {_told(car, *SHAFTS)} disagree: with that C would be {C:.4g} N.m/rad; "
             "leave one of them out, and it follows"
         )
-    return {}
+    return found
 
 
 @cache
 def _detailed(given: frozenset[tuple[str, float]]) -> dict[str, float]:
     """What follows for the validation vehicle."""
-    car = dict(given)
-    factor = 1.0
-    if given and "k_s" not in car and ("C" in car or not any(name in car for name in SHAFTS)):
+    car = {name: value for name, value in given if name in DECLARED or name == "damping_ratio"}
+
+    def stiffness(damping: float) -> float:
+        if not car or "k_s" in car or ("C" not in car and any(name in car for name in SHAFTS)):
+            return 1.0
         wanted = _frequency(DESIGN, car) * frequencies_apart()
         what = f"{_told(car | {'C': car.get('C', DEFAULT_CAR['C'])}, 'C', 'c_slip', 'k_g', 'k_p')}: k_s"
-        factor = _solved(
-            lambda factor: _frequency(DETAILED, with_details(car, factor)), wanted, 1.0 / FURTHEST, FURTHEST, what
+        return _solved(
+            lambda factor: _frequency(DETAILED, with_details(car, factor, damping)),
+            wanted,
+            1.0 / FURTHEST,
+            FURTHEST,
+            what,
         )
-    followed = _others_than_usual({name: with_details(car, factor)[name] for name in FOLLOW if name not in car})
+
+    def damping_ratio(damping: float) -> float:
+        return _oscillation(DETAILED, with_details(car, factor, damping)).damping_ratio
+
+    factor, damping = stiffness(1.0), 1.0
+    if "damping_ratio" in car:
+        what = f"{_told(car, 'damping_ratio')}: d_s"
+        damping = _solved(damping_ratio, car["damping_ratio"], LEAST_DAMPING, FURTHEST, what, "damping ratio", unit="")
+        factor = stiffness(damping)
+    followed = {name: with_details(car, factor, damping)[name] for name in FOLLOW if name not in car}
+    followed = _others_than_usual(followed)
     for name, value in followed.items():
         _require_possible(name, value, " as it follows from the other entries; give it")
     return followed
 
 
-def with_details(car: Mapping[str, float], factor: float) -> dict[str, float]:
+def with_details(car: Mapping[str, float], factor: float, damping: float = 1.0) -> dict[str, float]:
     """The car with what follows in the validation vehicle.
 
     Args:
         factor: on what is elastic in the default car, unless the car has half shafts of its own.
+        damping: factor on dampers that keep the damping ratios of the default car.
     """
 
     def over_usual(name: str) -> float:
@@ -158,7 +245,7 @@ def with_details(car: Mapping[str, float], factor: float) -> dict[str, float]:
         **dict.fromkeys(WITH_MASS, over_usual("m")),
     }
     found |= {name: DEFAULT_CAR[name] * by for name, by in scaled.items() if name not in car}
-    dampers = {name: sqrt(over_usual(k) * over_usual(J)) for name, (k, J) in DAMPERS.items()}
+    dampers = {name: damping * sqrt(over_usual(k) * over_usual(J)) for name, (k, J) in DAMPERS.items()}
     return found | {name: DEFAULT_CAR[name] * by for name, by in dampers.items() if name not in car}
 
 
@@ -181,10 +268,14 @@ def _require_agreeing(car: Mapping[str, float]) -> None:
 
 def _frequency(plant: ContinuousBlock, car: Mapping[str, float]) -> float:
     """In Hz, at which the drive train of the car swings in a plant."""
+    return _oscillation(plant, car).frequency
+
+
+def _oscillation(plant: ContinuousBlock, car: Mapping[str, float]) -> "Oscillation":
     from .oscillation import oscillation  # numerics, which only a car that is not the default one needs
 
     fields = plant.Parameters._fields
-    return oscillation(plant, plant.Parameters(**{name: car[name] for name in fields if name in car})).frequency
+    return oscillation(plant, plant.Parameters(**{name: car[name] for name in fields if name in car}))
 
 
 @cache
@@ -193,8 +284,16 @@ def frequencies_apart() -> float:
     return _frequency(DETAILED, {}) / _frequency(DESIGN, {})
 
 
-def _solved(frequency: Callable[[float], float], wanted: float, low: float, high: float, what: str) -> float:
-    """The value at which a frequency, which grows with it, is the one that is wanted.
+def _solved(
+    frequency: Callable[[float], float],
+    wanted: float,
+    low: float,
+    high: float,
+    what: str,
+    of: str = "frequency",
+    unit: str = " Hz",
+) -> float:
+    """The value at which a frequency, or another quantity with a unit that grows with it, is the one that is wanted.
 
     Raises:
         ParameterFileError: there is none between low and high; begins with what is looked for.
@@ -209,8 +308,8 @@ def _solved(frequency: Callable[[float], float], wanted: float, low: float, high
     least, most = frequency(low), frequency(high)
     if not least <= wanted <= most:
         raise ParameterFileError(
-            f"{what} does not follow: the drive train would have to swing at {wanted:.3g} Hz, and can at "
-            f"{least:.3g} to {most:.3g} Hz"
+            f"{what} does not follow: the {of} of the drive train would have to be {wanted:.3g}{unit}, and can be "
+            f"{least:.3g} to {most:.3g}{unit}"
         )
     from scipy.optimize import brentq  # pyright: ignore[reportUnknownVariableType]
 
@@ -249,7 +348,7 @@ def _others_than_usual(found: Mapping[str, float]) -> dict[str, float]:
 
 def _told(car: Mapping[str, float], *names: str) -> str:
     """Those of the names that the car has, with value and unit."""
-    return ", ".join(f"{name} = {car[name]:g} {DECLARED[name][1].unit}" for name in names if name in car)
+    return ", ".join(f"{name} = {car[name]:g} {OF_CAR[name][1].unit}".rstrip() for name in names if name in car)
 
 
 def _number(name: str, value: Any) -> float:
@@ -265,7 +364,7 @@ def _number(name: str, value: Any) -> float:
 
 
 def _require_possible(name: str, value: float, why: str = "") -> None:
-    block, variable = DECLARED[name]
+    block, variable = OF_CAR[name]
     low, high = variable.bounds()
     if not low <= value <= high:
         raise ParameterFileError(f"{name} = {value:g}{why}: {block} takes {variable.allowed()}")

@@ -1,8 +1,8 @@
 """Parameters in files: what belongs to a car in one, what is set in its controller in the other.
 
-Both are flat TOML, `J_1 = 0.09`, with the names and units that the blocks declare. An entry of a vehicle file
-is one for every block that declares the name: plant, motor, bus and the controller's model of them. What no
-file names follows (one_car) or keeps its start value.
+Both are flat TOML, `J_1 = 0.09`, with the names and units that the blocks declare; a text has a unit of its own,
+`m = "1887 kg"`. An entry of a vehicle file is one for every block that declares the name: plant, motor, bus and the
+controller's model of them. What no file names follows (one_car) or keeps its start value.
 """
 
 import numbers
@@ -19,7 +19,8 @@ from ..errors import ParameterFileError
 from ..fmu import Fmu
 from ..names import RENAMED
 from ..toml_file import toml_entries
-from .one_car import of_one_car
+from ..unit_conversion import quantity
+from .one_car import MEASURED, of_one_car
 
 OF_A_RUN = {
     "v_0": "the manoeuvre sets it",
@@ -98,7 +99,8 @@ def _of_vehicle(own: Iterable[Fmu] = ()) -> tuple[Owners, Mapping[str, str]]:
     """The entries of a vehicle file, and the names that do not belong there, with the reason."""
     everything, of_car = declarations([*EVERY.values(), *own]), car_names(own)
     of_controller = dict.fromkeys(everything.keys() - of_car, OF_CONTROLLER)
-    return {name: everything[name] for name in of_car}, of_controller | OF_A_RUN
+    measured = {name: [("a vehicle file", variable)] for name, variable in MEASURED.items()}
+    return measured | {name: everything[name] for name in of_car}, of_controller | OF_A_RUN
 
 
 def read_parameters(path: Path) -> dict[str, Any]:
@@ -224,8 +226,10 @@ def _checked(name: str, entry: Any, known: Owners, others: Collection[str], set_
 
 
 def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> Any:
-    """The value of an entry, which all that have the parameter must allow."""
+    """The value of an entry in SI units, which all that have the parameter must allow."""
     kind = next((variable.fmi_type for _, variable in owners), "Real")
+    if isinstance(entry, str) and kind == "Real":
+        entry = _quantity(name, entry, next((variable.unit or "1" for _, variable in owners), ""))
     python_type, meant = KINDS[kind]
     if (
         not isinstance(entry, python_type)
@@ -238,6 +242,16 @@ def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> A
         if not low <= entry <= high:
             raise ParameterFileError(f"{name} = {entry:g}: {fmu} takes {variable.allowed()}")
     return float(entry) if kind == "Real" else entry
+
+
+def _quantity(name: str, text: str, unit: str) -> float:
+    try:
+        if unit:
+            return quantity(text, unit)
+        reason = "must be a finite number"
+    except ValueError as problem:
+        reason = f"{problem}; a number alone is in {unit}"
+    raise ParameterFileError(f"{name} = {text!r:.40}: it {reason}")
 
 
 def _nearest(name: str, known: Collection[str]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ...fmus.building.one_car import with_estimates
 from ..base.atomic_files import complete
 from ..base.errors import DrivelineError
 from ..cosimulation.wiring import Fit, fit
@@ -64,6 +65,7 @@ def content(
         DrivelineError: there is no module of the loops, a manoeuvre has the name of the recording, or the plant cannot
             follow it.
     """
+    car = with_estimates(of_car or {})
     if recording is not None and recording.name in manoeuvres:
         raise DrivelineError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
     if mapped := next((each for each in given.values() if each.mapping), None):
@@ -89,7 +91,7 @@ def content(
         "knobs": {kind: [knob._asdict() for knob in found] for kind, found in turned.items()},
         "sport": SPORT,
         "comfort": COMFORT,
-        "follow": following(of_car or {}),
+        "follow": following(car),
         "panels": [
             {"label": label, "curves": [each._asdict() for each in signals]} for label, signals in PANELS.items()
         ],
@@ -105,7 +107,7 @@ def content(
             for metric, column in SHOWN
             if metric.name in WORTH
         ],
-        "files": {"car": dict(of_car or {}), "gains": dict(gains or {})},
+        "files": {"car": car, "gains": dict(gains or {})},
     }
 
 

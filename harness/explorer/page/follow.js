@@ -87,8 +87,8 @@ class Followers {
     }
     const [least, most] = [frequency(low), frequency(high)], Hz = (f) => Number(f.toPrecision(3));
     if (!(least <= wanted && wanted <= most))
-      throw new Refused(`${what} does not follow: the drive train would have to swing at ${Hz(wanted)} Hz, ` +
-        `and can at ${Hz(least)} to ${Hz(most)} Hz`);
+      throw new Refused(`${what} does not follow: the frequency of the drive train would have to be ${Hz(wanted)} Hz, ` +
+        `and can be ${Hz(least)} to ${Hz(most)} Hz`);
     while (b - a > 1e-10) {
       const middle = (a + b) / 2;
       if (missed(middle) < 0) a = middle; else b = middle;

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.fmus.building.car_entries import DEFAULT, FOLLOWS, SET, SOURCES, car, car_entries, template
+from driveline.fmus.building.car_entries import DEFAULT, ESTIMATED, FOLLOWS, SET, SOURCES, car, car_entries, template
 from driveline.fmus.building.one_car import FOLLOW, of_one_car
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
@@ -32,10 +32,23 @@ def test_the_other_way_round_the_stiffness_follows() -> None:
 def test_what_is_set_comes_first_and_all_of_a_car_is_there() -> None:
     entries = car_entries({"m": 1900.0})
     origins = [entry.origin for entry in entries]
-    assert origins == sorted(origins, key=[SET, FOLLOWS, DEFAULT].index)
+    assert origins == sorted(origins, key=[SET, FOLLOWS, ESTIMATED, DEFAULT].index)
     names = {entry.name for entry in entries}
     assert names >= {*FOLLOW, "J_1", "tau", "T_cyc", "mu"}
     assert names.isdisjoint({"k_d", "v_0", "T_0", "seed", "recorded_load", "T_take_max"})
+
+
+def test_what_a_data_sheet_lacks_is_estimated_from_what_it_has() -> None:
+    entries = {entry.name: entry for entry in car_entries({"m": 2900.0, "T_max": 360.0, "i": 12.0, "gap": 0.03})}
+    found = {name: (entries[name].origin, entries[name].source) for name in ("J_1", "J_2", "C", "c_slip")}
+    assert found == {
+        "J_1": (ESTIMATED, "T_max"),
+        "J_2": (ESTIMATED, "i"),
+        "C": (ESTIMATED, "T_max, i"),
+        "c_slip": (ESTIMATED, "m"),
+    }
+    assert (entries["phi_B"].origin, entries["phi_B"].source, entries["phi_B"].value) == (FOLLOWS, "gap", 0.18)
+    assert (entries["gap"].origin, entries["gap"].unit, entries["gap"].blocks) == (SET, "rad", ())
 
 
 def test_all_that_follows_tells_from_what() -> None:
@@ -53,7 +66,7 @@ def test_a_car_has_all_its_entries() -> None:
     "entries, message",
     [
         ({"ks": 30000.0}, "ks is not known; did you mean k_s"),
-        ({"C": "150"}, "C = '150': it must be a finite number"),
+        ({"C": "150"}, "C = '150': it must be a number and a unit"),
         ({"m": True}, "m = True: it must be a finite number"),
         ({"T_max": -5.0}, "T_max = -5: MotorTorqueLoop takes 1 to 2000 N.m"),
         ({"k_d": 2.0}, "k_d does not belong here: "),

@@ -2,16 +2,20 @@
 
 from collections.abc import Callable
 from math import exp, pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from docs.studies.data_file import ROOT
 from docs.studies.one_car import cars, frequencies
+from driveline.fmus.building.estimates import LAWS
 from driveline.fmus.building.one_car import (
     DEFAULT_CAR,
     DESIGN,
     DETAILED,
     FOLLOW,
+    INSTEAD,
     SHAFTS,
     _solved,
     differences,
@@ -19,11 +23,14 @@ from driveline.fmus.building.one_car import (
     updated,
 )
 from driveline.fmus.building.oscillation import SPEED, oscillation
+from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
 from driveline.harness.studies.margins.linear_plant import linear_plant
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models.block.types import ContinuousBlock
 from tests.together import together
+
+EXAMPLES = sorted((ROOT / "examples" / "cars").glob("*.toml"))
 
 APART = frequencies({}).apart
 """Frequency of the validation vehicle over that of the design model, in the default car."""
@@ -128,12 +135,28 @@ def test_shafts_that_make_another_frequency_by_three_per_cent_disagree(k_s: floa
 @together(
     "entries, message",
     [
-        ({"C": 300.0}, "C = 300 N.m/rad: k_s does not follow: the drive train would have to swing at 12.9 Hz"),
+        (
+            {"C": 300.0},
+            "C = 300 N.m/rad: k_s does not follow: the frequency of the drive train would have to be 12.9 Hz",
+        ),
         ({"J_w": 24.95}, "J_w + J_g = 25.05 kg.m2 and J_2 = 0.3 kg.m2 disagree: with i = 9 J_2 is 24.3 kg.m2 at the"),
         ({"F_z0": 14700.0}, "F_z0 = 14700 N and m = 1450 kg disagree: 1.47e+04 N are more than"),
         ({"m_h": 900.0}, "m_h = 900 kg and F_z0 = 8500 N disagree: 8829 N are more than"),
         ({"J_2": 0.004}, "J_w = 0.024 as it follows from the other entries; give it: ValidationVehicle takes"),
         ({"m": 1.0}, "m = 1: ValidationVehicle takes 300 to 40000 kg"),
+        ({"frequency": 7.0, "C": 90.0}, "frequency = 7 Hz, C = 90 N.m/rad: leave one out, as C follows from frequency"),
+        ({"gap": 0.04, "phi_B": 0.1}, "gap = 0.04 rad, phi_B = 0.1 rad: leave one out, as phi_B follows from gap"),
+        ({"damping_ratio": 0.1, "d_s": 9.0}, "damping_ratio = 0.1, d_s = 9 N.m.s/rad: leave one out"),
+        ({"frequency": 0.29}, "frequency = 0.29: a vehicle file takes 0.3 to 30 Hz"),
+        (
+            {"frequency": 25.0},
+            "C = 919.809 N.m/rad: k_s does not follow: the frequency of the drive train would have to",
+        ),
+        (
+            {"damping_ratio": 0.006},
+            "damping_ratio = 0.006: d_s does not follow: the damping ratio of the drive train would have to be",
+        ),
+        ({"gap": 1.0, "i": 9.0}, "phi_B = 4.5 with gap = 1 rad, i = 9: ValidationVehicle takes 0 to 3 rad"),
     ],
 )
 def test_a_car_that_cannot_be_is_refused_with_both_numbers(entries: dict[str, float], message: str) -> None:
@@ -143,6 +166,40 @@ def test_a_car_that_cannot_be_is_refused_with_both_numbers(entries: dict[str, fl
 @together("entries", [{"J_w": 24.9}, {"F_z0": 14600.0}, {"m_h": 890.0}, {"J_2": 0.0235, "J_w": 1.8}])
 def test_measured_numbers_need_not_agree_to_the_last_digit(entries: dict[str, float]) -> None:
     assert of_one_car(entries, FOLLOW).items() >= entries.items()
+
+
+def test_a_car_by_its_data_sheet_is_estimated_through_the_default_car() -> None:
+    """The motor is eight times as strong, the wheels are twice as large, the gear has twice the ratio."""
+    found = followed(T_max=1440.0, r=0.58, i=18.0, m=2900.0)
+    expected = {"J_1": 16.0, "J_2": 8.0, "C": 4.0, "phi_B": 2.0, "c_slip": 2.0}
+    assert {name: found[name] / DEFAULT_CAR[name] for name in expected} == pytest.approx(expected, rel=1e-5)
+    assert followed(T_max=180.0, r=0.29, i=9.0, m=1450.0) == {}
+    assert followed(F_z0=4250.0)["c_slip"] == followed(F_z0=4250.0, m=2900.0)["c_slip"] == 70000.0, "the load decides"
+    assert of_one_car({"T_max": 1.0}, ())["J_1"] == 0.001, "no less than a block takes"
+    assert refusal(T_max=1.0).endswith("; not given: J_1, C")
+    assert "C" not in followed(T_max=360.0, k_s=25800.0, k_g=120000.0, k_p=70000.0, J_1=0.055), "which has its shafts"
+
+
+@together("path", EXAMPLES)
+def test_what_is_estimated_is_off_by_a_factor_of_two_on_the_examples(path: Path) -> None:
+    entries = read_vehicle(path)
+    full = of_one_car(entries, ())
+    known = {name: full[name] for name in LAWS if name in full}
+    others = {name: value for name, value in entries.items() if name not in {*LAWS, *INSTEAD}}
+    for name, value in of_one_car(others, ()).items():
+        if name in known:
+            assert max(value / known[name], known[name] / value) < (3.1 if name == "phi_B" else 2.05), name
+
+
+def test_what_is_measured_of_a_whole_car_is_that_of_the_validation_vehicle() -> None:
+    entries = {"m": 1900.0, "J_1": 0.07, "frequency": 6.5, "damping_ratio": 0.12, "gap": 0.04, "i": 10.0}
+    found = of_one_car(entries, FOLLOW)
+    assert found.keys().isdisjoint({"frequency", "damping_ratio", "gap"})
+    assert found["phi_B"] == 0.2
+    p = DETAILED.Parameters(**{name: found[name] for name in DETAILED.Parameters._fields if name in found})
+    assert oscillation(DETAILED, p) == pytest.approx((6.5, 0.12), rel=3e-3)
+    assert frequencies(entries).apart == pytest.approx(APART, rel=1e-3)
+    assert updated(entries, {"C": 90.0, "phi_B": 0.1}).keys() == {"m", "J_1", "damping_ratio", "i", "C", "phi_B"}
 
 
 def test_a_stiffness_that_becomes_known_replaces_the_shafts_and_the_rest_goes_back_to_the_default_car() -> None:

@@ -77,7 +77,7 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
     [
         ("J1 = 0.09", "J1 is not known; did you mean J_1"),
         ("hat = 3", "hat is not known"),
-        ("J_1 = '0.09'", "J_1 = '0.09': it must be a finite number"),
+        ("J_1 = '0.09'", "J_1 = '0.09': it must be a number and a unit; a number alone is in kg.m2"),
         ("J_1 = true", "J_1 = True: it must be a finite number"),
         ("J_1 = [0.09]", "J_1 = [0.09]: it must be a finite number"),
         ("J_1 = nan", "J_1 = nan: it must be a finite number"),
