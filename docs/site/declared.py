@@ -27,7 +27,7 @@ from driveline.harness.recordings.thresholds import Threshold
 from driveline.harness.views.markdown import markdown_table
 from driveline.models.controller.causes import FAILURES, FEEDING, Cause
 from driveline.models.damping_controller import BLOCK
-from tests.fmus.native.legal_hosts import HOSTS
+from tests.fmus.legal_hosts import HOSTS
 
 CHECKS = Path(__file__).with_name("recording_checks.md").read_text(encoding="utf-8")
 

@@ -6,7 +6,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import sysconfig
 from pathlib import Path
 
 import fmpy
@@ -14,6 +13,7 @@ import pytest
 
 from driveline.fmus.native.compiler import host_compiler
 from tests.fmus.host import opened
+from tests.fmus.libpython import with_libpython
 from tests.skipping import skipped_if_impossible
 from tests.together import together
 
@@ -26,8 +26,15 @@ def instance_of(host):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the signal is that of Linux")
-@together("call", ["fmi2FreeFMUstate(component, None)", "fmi2DoStep(None, zero, zero, 0)"])
-def test_a_null_pointer_ends_the_host(built, tmp_path, call):
+@together(
+    "call",
+    [
+        "fmi2FreeFMUstate(component, None)",
+        "fmi2DoStep(None, zero, zero, 0)",
+        "fmi2Instantiate(b'x', 1, b'', b'file:///f%C3%BCr', ctypes.byref(host._callbacks), 0, 0)",
+    ],
+)
+def test_a_null_pointer_and_an_escaped_umlaut_end_the_host(built, tmp_path, call):
     shutil.copy(HOST, tmp_path / "fmu_host.py")
     program = f"""
 import ctypes
@@ -73,19 +80,6 @@ FLAGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion",
 FAULT = 99
 """Exit code for a use of memory that was given back."""
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="there LD_PRELOAD loads libpython")
-
-
-@pytest.fixture(scope="module")
-def libpython() -> Path:
-    name = sysconfig.get_config_var("INSTSONAME") or ""
-    path = Path(sysconfig.get_config_var("LIBDIR")) / name
-    found = path if path.is_file() else Path(sysconfig.get_config_var("LIBDIR")) / sysconfig.get_config_var("MULTIARCH")
-    found = found if found.is_file() else found / name
-    if ".so" not in name or not found.is_file():
-        pytest.skip("this Python has no shared library")
-    return found
-
 
 @pytest.fixture(scope="module")
 def command(built, tmp_path_factory) -> list[str]:
@@ -99,12 +93,13 @@ def command(built, tmp_path_factory) -> list[str]:
     return [str(folder / "host"), str(library), "", (folder / "resources").as_uri(), "3", "1e-3", "0", "2"]
 
 
-def environment(libpython: Path) -> dict[str, str]:
-    return {**os.environ, "LD_PRELOAD": str(libpython), "PYTHONHOME": sys.base_prefix, "PYTHONMALLOC": "malloc"}
+@pytest.fixture(scope="module")
+def environment() -> dict[str, str]:
+    return {**os.environ, **with_libpython(), "PYTHONMALLOC": "malloc"}
 
 
-def test_it_runs_and_the_process_ends_with_0(command, libpython):
-    done = subprocess.run(command, env=environment(libpython), capture_output=True, text=True, check=False)
+def test_it_runs_and_the_process_ends_with_0(command, environment):
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     first, _, second = done.stdout.partition("again\n")
     assert (done.returncode, done.stderr, first) == (0, "", second)
     assert first
@@ -112,9 +107,7 @@ def test_it_runs_and_the_process_ends_with_0(command, libpython):
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed")
 @pytest.mark.slow
-def test_at_the_end_nothing_is_used_that_was_given_back(command, libpython):
+def test_at_the_end_nothing_is_used_that_was_given_back(command, environment):
     valgrind = ["valgrind", "-q", "--undef-value-errors=no", "--leak-check=no", f"--error-exitcode={FAULT}"]
-    done = subprocess.run(
-        [*valgrind, *command], env=environment(libpython), capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([*valgrind, *command], env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]

@@ -1,6 +1,6 @@
-/* Hosts that do what the standard allows, each in its way; legal_hosts.py has the table of them. What an FMU gives is
-printed every PERIOD, one line an instant. Usage:
-legal_hosts LIBRARY GUID OUTPUTS IN_1 VALUE_1 IN_2 VALUE_2 TUNABLE VALUE inputs=IN step=S start=T ...
+/* Hosts that do what the standard allows, each in its way; legal_hosts.py has the table of them. Every PERIOD what an FMU
+gives is printed, one line an instant, and the first input changes its sign. Usage:
+legal_hosts LIBRARY GUID RESOURCES OUTPUTS IN_1 VALUE_1 IN_2 VALUE_2 TUNABLE VALUE_1 VALUE_2 inputs=IN step=S ...
 with OUTPUTS as 3,4,5. */
 #include "fmi2Functions.h"
 
@@ -15,11 +15,11 @@ enum { MOST = 64, THREADS = 4 };
 static const double PERIOD = 0.21, DURATION = 1.26;
 
 static struct {
-    char inputs; /* b, i, a, s: before, in or after initialization, or start values in it and these after it */
-    double step, start;
+    char inputs; /* b, i, a: before, in or after initialization; s: start values in it and these after it;
+                    l: start values until after the first step; n: and nothing is exchanged before that */
+    double begins, step, lasts, of; /* before the run that is printed it runs so long, in steps of so much */
     int adds_up, resets, restores, tunes, threads;
-    const char *resources;
-} way = {'i', 1e-3, 0.0, 0, 0, 0, 0, 0, "file:///tmp"};
+} way = {'i', 0.0, 1e-3, 0.0, 1.0, 0, 0, 0, 0, 0};
 
 static struct {
     fmi2InstantiateTYPE *instantiate;
@@ -41,10 +41,11 @@ static struct {
 } fmu;
 
 static fmi2ValueReference in[2], outputs[MOST];
-static double values[2], starts[2], tuned;
+static fmi2ValueReference tunable;
+static double values[2], tuned[2];
 static size_t count;
-static long tunable;
-static const char *guid;
+static const char *guid, *resources;
+static int of_fmi3;
 
 static void say(fmi2ComponentEnvironment e, fmi2String name, fmi2Status s, fmi2String category, fmi2String text, ...)
 {
@@ -66,7 +67,7 @@ static void ok(fmi2Status status, const char *call)
 
 static fmi2Component made(const char *name)
 {
-    fmi2Component one = fmu.instantiate(name, fmi2CoSimulation, guid, way.resources, &callbacks, fmi2False, fmi2True);
+    fmi2Component one = fmu.instantiate(name, fmi2CoSimulation, guid, *resources ? resources : NULL, &callbacks, fmi2False, fmi2True);
     if (!one)
         exit(1);
     return one;
@@ -74,13 +75,22 @@ static fmi2Component made(const char *name)
 
 static void initialize(fmi2Component one)
 {
-    OK(fmu.get(one, in, 2, starts));
+    double starts[2];
     if (way.inputs == 'b')
         OK(fmu.set(one, in, 2, values));
-    OK(fmu.setup(one, fmi2False, 0.0, way.start, fmi2False, 0.0));
-    OK(fmu.enter(one));
-    if (way.inputs == 'i' || way.inputs == 's')
-        OK(fmu.set(one, in, 2, way.inputs == 'i' ? values : starts));
+    if (way.tunes)
+        OK(fmu.set(one, &tunable, 1, &tuned[1]));
+    OK(fmu.setup(one, fmi2False, 0.0, way.begins, fmi2False, 0.0));
+    if (!of_fmi3) /* there the start time is given on entering */
+        OK(fmu.enter(one));
+    if (way.tunes)
+        OK(fmu.set(one, &tunable, 1, &tuned[0]));
+    if (way.inputs == 's' || way.inputs == 'l') {
+        OK(fmu.get(one, in, 2, starts));
+        OK(fmu.set(one, in, 2, starts));
+    }
+    if (way.inputs == 'i')
+        OK(fmu.set(one, in, 2, values));
     OK(fmu.leave(one));
     if (way.inputs == 'a' || way.inputs == 's')
         OK(fmu.set(one, in, 2, values));
@@ -105,30 +115,45 @@ static fmi2Component restored(fmi2Component from)
     return to;
 }
 
-static char *run(fmi2Component one, int writes)
+/* The time of a host that counts its steps, or adds them up. */
+static double next(double time, double start, double step, long made)
+{
+    return way.adds_up ? time + step : start + (double)made * step;
+}
+
+static char *run(fmi2Component one, int first)
 {
     char *text = calloc(1, 1 << 16), *end = text;
-    double time = way.start;
+    double y[MOST], time = way.begins, now[2] = {values[0], values[1]};
     const long each = lround(PERIOD / way.step), steps = lround(DURATION / way.step);
     initialize(one);
+    for (long k = 0; k < lround(way.lasts / way.of); k++) {
+        OK(fmu.step(one, time, way.of, fmi2True));
+        time = next(time, way.begins, way.of, k + 1);
+    }
+    const double start = time;
     for (long k = 0; k <= steps; k++) {
-        double y[MOST];
-        if (k % each == 0) {
+        const int instant = k % each == 0;
+        if (instant && (k > 0 || way.inputs != 'n')) {
             OK(fmu.get(one, outputs, count, y));
             for (size_t n = 0; n < count; n++)
                 end += sprintf(end, "%.17g ", y[n]);
             end += sprintf(end, "\n");
-            if (way.restores)
-                one = restored(one);
+            now[0] = k > 0 ? -now[0] : now[0];
         }
-        if (k == each && way.tunes)
-            OK(fmu.set(one, (fmi2ValueReference[]){(fmi2ValueReference)tunable}, 1, &tuned));
-        if (k < steps)
-            OK(fmu.step(one, time, way.step, fmi2True));
-        time = way.adds_up ? time + way.step : way.start + (double)(k + 1) * way.step;
+        if (instant && way.restores)
+            one = restored(one);
+        if (instant && way.tunes)
+            OK(fmu.set(one, &tunable, 1, &tuned[k / each % 2]));
+        if (k == steps)
+            break;
+        if (k > 0 && (instant || k == 1))
+            OK(fmu.set(one, in, 2, now));
+        OK(fmu.step(one, time, way.step, fmi2True));
+        time = next(time, start, way.step, k + 1);
     }
     OK(fmu.terminate(one));
-    if (way.resets && writes) {
+    if (way.resets && first) {
         OK(fmu.reset(one));
         free(text);
         return run(one, 0);
@@ -156,21 +181,26 @@ int main(int argc, char **argv)
     FIND(discard, "fmi2FreeInstance"), FIND(get_state, "fmi2GetFMUstate"), FIND(set_state, "fmi2SetFMUstate");
     FIND(free_state, "fmi2FreeFMUstate"), FIND(size, "fmi2SerializedFMUstateSize");
     FIND(serialize, "fmi2SerializeFMUstate"), FIND(deserialize, "fmi2DeSerializeFMUstate");
-    guid = argv[2];
-    for (char *text = argv[3]; *text && count < MOST; text += *text == ',')
+    of_fmi3 = dlsym(library, "fmi3DoStep") != NULL;
+    guid = argv[2], resources = argv[3];
+    for (char *text = argv[4]; *text && count < MOST; text += *text == ',')
         outputs[count++] = (fmi2ValueReference)strtoul(text, &text, 10);
-    for (int k = 0; k < 2; k++)
-        in[k] = (fmi2ValueReference)strtoul(argv[4 + 2 * k], NULL, 10), values[k] = atof(argv[5 + 2 * k]);
-    tunable = atol(argv[8]), tuned = atof(argv[9]);
-    for (int k = 10; k < argc; k++) {
+    for (int k = 0; k < 2; k++) {
+        in[k] = (fmi2ValueReference)strtoul(argv[5 + 2 * k], NULL, 10), values[k] = atof(argv[6 + 2 * k]);
+        tuned[k] = atof(argv[10 + k]);
+    }
+    tunable = (fmi2ValueReference)strtoul(argv[9], NULL, 10);
+    for (int k = 12; k < argc; k++) {
         const char *is = strchr(argv[k], '=') + 1;
         switch (argv[k][0]) {
         case 'i': way.inputs = *is; break;
-        case 's': *(strncmp(argv[k], "step", 4) ? &way.start : &way.step) = atof(is); break;
+        case 'b': way.begins = atof(is); break;
+        case 's': way.step = atof(is); break;
+        case 'l': way.lasts = atof(is); break;
+        case 'o': way.of = atof(is); break;
         case 'a': way.adds_up = 1; break;
         case 'r': *(strncmp(argv[k], "reset", 5) ? &way.restores : &way.resets) = 1; break;
-        case 't': *(strncmp(argv[k], "tunes", 5) ? &way.threads : &way.tunes) = 1; break;
-        default: way.resources = *is ? is : NULL;
+        default: *(strncmp(argv[k], "tunes", 5) ? &way.threads : &way.tunes) = 1;
         }
     }
     pthread_t threads[THREADS];
