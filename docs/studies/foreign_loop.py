@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 from driveline.harness.base.csv_file import write_csv
 from driveline.harness.manoeuvres.prbs import shift_register
@@ -180,7 +181,7 @@ def logged(true: np.ndarray, car: Car, loop: Loop, seed: int, path: Path, durati
     demand, T_mot, omega_1, omega_2, T_load = true.T
 
     def late(signal: np.ndarray, by: float) -> np.ndarray:
-        return np.interp(rows - by, times, signal)
+        return make_interp_spline(times, signal, k=3)(rows - by)
 
     noisy = late(omega_1, loop.late_omega) + 0.15 * rng.standard_normal(n)
     columns = {

@@ -178,7 +178,7 @@ def short(seed: int) -> Found:
         recorded = read_measurement(path, car.i, car.r)
     start, behind = known(car.known | {"J_2": car.J_2, "C": car.C, "phi_B": car.phi_B})
     drive, _ = drive_of(recorded)
-    return search(Predictor(drive, of_sensors(recorded), behind), start, FREE, start)
+    return search(Predictor(drive, of_sensors(drive, recorded.T_mot), behind), start, FREE, start)
 
 
 @dataclass(frozen=True)

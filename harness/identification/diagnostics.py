@@ -163,7 +163,7 @@ def diagnose_outliers(predicted: Predicted, T_s: float) -> Iterator[str]:
     """Samples of the motor speed that are off alone."""
     counted, size = predicted.counted, np.abs(predicted.size[0, predicted.counted])
     largest = np.sort(size)[-CROWD:]
-    at = np.flatnonzero(size > max(OUTLIER, LONELY * float(np.median(largest)))) + counted.start
+    at = counted[size > max(OUTLIER, LONELY * float(np.median(largest)))]
     if len(at):
         k = int(at[np.argmax(np.abs(predicted.size[0, at]))])
         others = f" and {len(at) - 1} more" if len(at) > 1 else ""

@@ -63,9 +63,7 @@ def plot_fit(identified: Identified, recording: Measurement, stem: Path, options
     window = options.clipped(begin, end) if options.window else (max(end - STRETCH, begin), end)
     alone = [*predicted(identified, recording, window), *responses(identified)]
     rows = [*([panel] for panel in alone), ellipses(identified)]
-    title = (
-        f"Prediction, frequency response (teeth in contact) and certainty\n{identified.name}"
-    )
+    title = f"Prediction, frequency response (teeth in contact) and certainty\n{identified.name}"
     options = options._replace(caption=f"{options.caption}\n{READING}; {MEANS[identified.name]}".strip())
     return plot(rows, Axis("time in s", window), title, stem, options, size=(7.2, 1.75), same_y=False)
 
@@ -86,10 +84,13 @@ def predicted(identified: Identified, recording: Measurement, window: tuple[floa
     x = np.hstack([t[at], gap]).ravel()
     omega_1, omega_2, T_gear, T_load = (np.hstack([runs[..., k], gap]).ravel() for k in range(4))
     valid = np.ones(len(t), bool) if recording.valid is None else recording.valid
+    starts = list(identified.drive.starts[1:])
     age = identified.late_wheel_speed.time if identified.late_wheel_speed else 0.0
 
     def measured(y: np.ndarray, quantity: str, label: str = "measured", width: float = 1.6) -> Curve:
-        return Curve(t, y / file_units[quantity].factor, label, GREY, width=width)
+        y = y / file_units[quantity].factor
+        y[starts] = np.nan  # a gap
+        return Curve(t, y, label, GREY, width=width)
 
     def model(y: np.ndarray, quantity: str, label: str = "", width: float = 1.0) -> Curve:
         return Curve(x, y / file_units[quantity].factor, label, BLUE, width=width)
@@ -172,11 +173,12 @@ def drawn_responses(identified: Identified, tyre: Callable[..., Tyre | None], se
 
 def recorded_response(identified: Identified) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies in Hz and omega_1/T_mot there, by the spectra of both (Welch), of which the means of the samples are
-    taken. Of a recording that crosses the gap it is not that of teeth in contact."""
+    taken, in the longest piece. Of a recording that crosses the gap it is not that of teeth in contact."""
     drive, p = identified.drive, identified.p
-    T_mot = drive.torque(p.late_T).mean(axis=1) / p.g_T
-    omega_1 = 0.5 * (drive.omega_1[1:] + drive.omega_1[:-1])
-    rate, length = 1.0 / drive.T_s, min(WINDOW, len(drive))
+    at = slice(drive.longest.start, drive.longest.stop - 1)
+    T_mot = drive.torque(p.late_T)[at].mean(axis=1) / p.g_T
+    omega_1 = 0.5 * (drive.omega_1[1:] + drive.omega_1[:-1])[at]
+    rate, length = 1.0 / drive.T_s, min(WINDOW, len(T_mot))
     f, cross = csd(T_mot, omega_1, rate, nperseg=length, detrend="linear")
     _, power = welch(T_mot, rate, nperseg=length, detrend="linear")
     return f, cross / power

@@ -7,7 +7,7 @@ import numpy as np
 
 from .buffered import Buffered
 from .drive_train import STEPS, Parameters, State, Vehicle, gear_torque, sample, tyre_torque
-from .prediction import Predictor
+from .prediction import BURN_IN, Predictor
 
 SIMULATED = 0.5
 """Length of a run in s."""
@@ -17,7 +17,7 @@ RESULTS = ("omega_1", "omega_2", "T_gear", "T_load")
 
 
 def free_runs(predictor: Predictor, p: Parameters, states: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray]:
-    """Runs over SIMULATED, one behind the other to the end of the recording, each from the state of the filter.
+    """Runs over SIMULATED, one behind the other to the end of each piece, each from the state of the filter.
 
     Args:
         states: of the filter after each sample, shape (n, states).
@@ -31,7 +31,9 @@ def free_runs(predictor: Predictor, p: Parameters, states: np.ndarray, first: in
     n = round(SIMULATED / drive.T_s)
     torque = drive.torque(p.late_T)
     once = np.array([*p, *predictor.behind, drive.T_s], dtype=float)
-    firsts = np.arange(max(first, 1), len(drive) - n + 1, n)
+    burn = round(BURN_IN / drive.T_s)
+    begins = [(max(first, start + burn if start else 1), last - n + 1) for start, last in drive.pieces]
+    firsts = np.concatenate([np.arange(begin, end, n) for begin, end in begins])
     runs = [_run(n)(states[at - 1], torque[at : at + n].T, np.tile(once[:, None], (1, n)))[1].T.copy() for at in firsts]
     return firsts[:, None] + np.arange(1, n + 1), np.array(runs)
 

@@ -18,7 +18,7 @@ HALF_GAPS = (0.02, 0.1, 0.3)
 """phi_B in rad."""
 
 STRETCH = 3.0
-"""Time in s of the recording by which they are compared."""
+"""Time in s of the longest piece by which they are compared."""
 
 PASSES = 10
 """Into each valley."""
@@ -32,7 +32,8 @@ def best_start(predictor: Predictor, given: Parameters, free: Sequence[str]) -> 
         free: of the parameters that are searched, J_2, C and phi_B among them.
     """
     drive = predictor.drive
-    piece = predictor.of(drive.between(0, min(round(STRETCH / drive.T_s), len(drive))))
+    first, end = drive.longest.start, drive.longest.stop
+    piece = predictor.of(drive.between(first, min(first + round(STRETCH / drive.T_s), end - 1)))
 
     def likeliest(ratio: float) -> Parameters:
         others = (

@@ -142,16 +142,18 @@ def identify(
             f"{recording.name} is {duration:.3g} s long; {least:.3g} s or more are needed to judge the fit by the last "
             "quarter"
         )
-    predictor = Predictor(drive, of_sensors(recording), behind)
+    predictor = Predictor(drive, of_sensors(drive, recording.T_mot), behind)
     found = fit(predictor, start, more, log)
     measured = drive.T_load is not None
     log("judging it by data that were not used")
     quality = judged(predictor, found)
-    wheel_speed = late_wheel_speed(recording.omega_2, recording.valid, found.predicted.states[:, 1], drive.T_s)
+    at = drive.longest
+    valid, omega_2 = recording.valid, found.predicted.states[at.start : at.stop - 1, 1]
+    wheel_speed = late_wheel_speed(recording.omega_2[at], None if valid is None else valid[at], omega_2, drive.T_s)
     warnings = (
         *recording.warnings,
         *(diagnose_torque_loop(loop, drive.T_s, tau) if loop else ()),
-        *diagnose_spectrum(drive.omega_1, drive.T_s),
+        *diagnose_spectrum(drive.omega_1[at], drive.T_s),
         *diagnose_outliers(found.predicted, drive.T_s),
         *(diagnose_offsets(found.predicted, found.p) if measured else ()),
         *diagnose_parameters(found),
@@ -163,11 +165,15 @@ def identify(
     return Identified(name, found, predictor, answers, wheel_speed, quality, warnings)
 
 
-def of_sensors(recording: Measurement) -> Noise:
-    """The noise that the recording shows."""
-    T_load = 0.0 if recording.T_load is None else white_noise(recording.T_load)
-    coloured = is_coloured(recording.omega_1, float(np.median(np.diff(recording.time))))
-    return Noise(white_noise(recording.omega_1, coloured), white_noise(recording.T_mot), T_load)
+def of_sensors(drive: Drive, T_mot: np.ndarray) -> Noise:
+    """The noise that a recording shows.
+
+    Args:
+        T_mot: as recorded.
+    """
+    T_load = 0.0 if drive.T_load is None else white_noise(drive.T_load)
+    coloured = is_coloured(drive.omega_1[drive.longest], drive.T_s)
+    return Noise(white_noise(drive.omega_1, coloured), white_noise(T_mot), T_load)
 
 
 def fit(predictor: Predictor, start: Parameters, more: Sequence[str] = (), log: Log = lambda _: None) -> Found:
@@ -199,7 +205,7 @@ def judged(predictor: Predictor, found: Found) -> Quality:
     p = search(predictor.of(predictor.drive.between(0, cut)), found.p, found.free, found.centre, most=6).p
     predicted = predictor.predicted(p)
     at, runs = free_runs(predictor, p, predicted.states, cut)
-    size = predicted.size[:, cut : predicted.counted.stop]
+    size = predicted.size[:, predicted.counted[predicted.counted >= cut]]
     load = predictor.drive.T_load
     T_load = np.nan if load is None else nrmse(p.g_L * runs[..., 3] - load[at], load[at], centred=True)
     size_1, size_L = np.sqrt(np.mean(size**2, axis=1))

@@ -1,18 +1,21 @@
 """A recording as the model takes it: the motor torque between samples, and what the model is compared with."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
-from ..recordings.measurement import Measurement
+from ..recordings.measurement import PIECE, Measurement
 from ..recordings.source import RecordingError
 from .drive_train import STEPS
 from .torque_loop import FittedLoop, fitted
 
 UNEVEN = 0.05
 """Share of a sample by which its time may be off."""
+
+GAP = 1.5
+"""Times the interval from which on a step of time parts two pieces."""
 
 LATEST = 0.006
 """Time in s by which a torque may be early or late at most."""
@@ -28,6 +31,7 @@ class Drive:
         T_mot: recorded motor torque in N.m.
         T_load: recorded load torque in N.m; None: it was not.
         exact: where the motor torque is that of the demand, without noise; None: nowhere.
+        starts: first samples of the pieces, between which there are gaps.
     """
 
     T_s: float
@@ -35,26 +39,43 @@ class Drive:
     T_mot: np.ndarray
     T_load: np.ndarray | None
     exact: np.ndarray | None = None
+    starts: tuple[int, ...] = (0,)
 
     def __len__(self) -> int:
         """Samples after the first."""
         return len(self.omega_1) - 1
 
+    @property
+    def pieces(self) -> list[tuple[int, int]]:
+        """First and last sample of each that has two or more."""
+        every = zip(self.starts, [*(start - 1 for start in self.starts[1:]), len(self)], strict=True)
+        return [(first, last) for first, last in every if last > first]
+
+    @property
+    def longest(self) -> slice:
+        """The samples of the longest piece."""
+        first, last = max(self.pieces, key=lambda piece: piece[1] - piece[0])
+        return slice(first, last + 1)
+
     def between(self, first: int, last: int) -> "Drive":
         """From one sample to another one."""
         at = slice(first, last + 1)
         load, exact = (None if of is None else of[at] for of in (self.T_load, self.exact))
-        return replace(self, omega_1=self.omega_1[at], T_mot=self.T_mot[at], T_load=load, exact=exact)
+        starts = (0, *(start - first for start in self.starts if first < start <= last))
+        return Drive(self.T_s, self.omega_1[at], self.T_mot[at], load, exact, starts)
 
     def torque(self, late: float) -> np.ndarray:
         """The motor torque when it acted, where it was recorded so many seconds late: means over the STEPS parts of
-        each sample of the cubic spline through the recorded ones, shape (n, STEPS). A straight line would bias J_2 by
-        .055 % at 2 ms."""
+        each sample of the cubic spline through the recorded ones, shape (n, STEPS), NaN between pieces. A straight line
+        would bias J_2 by .055 % at 2 ms."""
         if late not in self._torques:
             if len(self._torques) > 1:  # a search moves one delay at a time
                 self._torques.clear()
-            edges = np.arange(STEPS * len(self) + 1) / STEPS + late / self.T_s
-            self._torques[late] = np.diff(self._integral(edges)).reshape(-1, STEPS) * STEPS
+            means = np.full((len(self), STEPS), np.nan)
+            for (first, last), integral in zip(self.pieces, self._integrals, strict=True):
+                edges = np.arange(STEPS * (last - first) + 1) / STEPS + late / self.T_s
+                means[first:last] = np.diff(integral(edges)).reshape(-1, STEPS) * STEPS
+            self._torques[late] = means
         return self._torques[late]
 
     @cached_property
@@ -63,11 +84,11 @@ class Drive:
         return {}
 
     @cached_property
-    def _integral(self) -> BSpline:
-        """Over the time in samples; LATEST beyond both ends the torque is held."""
+    def _integrals(self) -> list[BSpline]:
+        """Of each piece, over the time in samples; LATEST beyond both ends the torque is held."""
         beyond = int(np.ceil(LATEST / self.T_s))
-        held = np.pad(self.T_mot, beyond, mode="edge")
-        return make_interp_spline(np.arange(-beyond, len(self) + beyond + 1), held, k=3).antiderivative()
+        held = [np.pad(self.T_mot[first : last + 1], beyond, mode="edge") for first, last in self.pieces]
+        return [make_interp_spline(np.arange(len(T)) - beyond, T, k=3).antiderivative() for T in held]
 
 
 def drive_of(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
@@ -78,9 +99,13 @@ def drive_of(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
     Raises:
         RecordingError: the samples are not evenly spaced.
     """
-    time = recording.time
-    T_s = float(time[-1] - time[0]) / (len(time) - 1)
-    off = np.abs(np.diff(time) - T_s)
+    time, steps = recording.time, np.diff(recording.time)
+    within = steps < GAP * np.median(steps)
+    T_s = float(np.mean(steps[within]))
+    starts = (0, *(np.flatnonzero(~within) + 1).tolist())
+    off = np.abs(steps - T_s) * within
+    # of many gaps a clock that is not steady is the reason
+    off = off if len(starts) * PIECE < 2.0 * T_s * len(time) else np.abs(steps - T_s)
     if off.max() > UNEVEN * T_s:
         k = int(off.argmax())
         raise RecordingError(
@@ -90,6 +115,6 @@ def drive_of(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
         )
     loop = None if recording.T_ref is None else fitted(recording.T_ref, recording.T_mot, T_s)
     if loop is None or not loop.answers:
-        return Drive(T_s, recording.omega_1, recording.T_mot, recording.T_load), loop
+        return Drive(T_s, recording.omega_1, recording.T_mot, recording.T_load, starts=starts), loop
     T_mot = np.where(loop.met, loop.torque, recording.T_mot)
-    return Drive(T_s, recording.omega_1, T_mot, recording.T_load, loop.met), loop
+    return Drive(T_s, recording.omega_1, T_mot, recording.T_load, loop.met, starts), loop

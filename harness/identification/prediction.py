@@ -57,14 +57,14 @@ class Predicted:
         size: over its standard deviation, shape (2, n).
         log_S: logarithm of the variance that the filter expects, in (rad/s)2 and (N.m)2, shape (2, n).
         states: after each sample, shape (n, states).
-        counted: samples that count: a recording may begin in the middle of a swing, and of a torque that comes late the
-            end is not known.
+        counted: indices of the samples that count: a piece may begin in the middle of a swing, and of a torque that
+            comes late the end is not known.
     """
 
     size: np.ndarray
     log_S: np.ndarray
     states: np.ndarray
-    counted: slice
+    counted: np.ndarray
 
     @property
     def cost(self) -> float:
@@ -110,6 +110,9 @@ class Predictor:
         exact = np.zeros(len(drive) + 1, bool) if drive.exact is None else drive.exact
         # a late torque acts in the sample before or after
         self._noisy = 1.0 - minimum_filter1d(exact, 5)[1:]
+        burn, late = round(BURN_IN / drive.T_s), round(LATEST / drive.T_s)
+        pieces = (np.arange(a + min(burn, (b - a) // 2), b - late) for a, b in drive.pieces)
+        self.counted = np.concatenate(list(pieces))
 
     def of(self, drive: Drive) -> "Predictor":
         """The same for another part of the recording."""
@@ -120,24 +123,25 @@ class Predictor:
         Args:
             start: see `start`; None: that of these parameters.
         """
-        start = self.start(p) if start is None else start
-        after, seen = self._pass(p, start, len(self.drive))
-        size, log_S = seen[:2].copy(), seen[2:].copy()
+        starts = self.start(p) if start is None else start
+        size, log_S = np.zeros((2, 2, len(self.drive)))
+        states = np.zeros((len(self.drive), STATES))
+        for begin, (first, last) in zip(starts, self.drive.pieces, strict=True):
+            after, seen = self._pass(p, begin, first, last)
+            size[:, first:last], log_S[:, first:last], states[first:last] = seen[:2], seen[2:], after[:STATES].T
         if not self.measured:
             size[1], log_S[1] = 0.0, 0.0
-        return Predicted(size, log_S, after[:STATES].T.copy(), self.counted)
-
-    @property
-    def counted(self) -> slice:
-        n, T_s = len(self.drive), self.drive.T_s
-        return slice(min(round(BURN_IN / T_s), n // 2), n - round(LATEST / T_s))
+        return Predicted(size, log_S, states, self.counted)
 
     def start(self, p: Parameters) -> np.ndarray:
-        """State and covariance at the first sample: the likeliest of several, since a recording may begin in the middle
-        of a swing. They are compared by a filter that follows what comes, so that a wrong one is not lost."""
-        n, omega = min(round(COMPARED / self.drive.T_s), len(self.drive)), float(self.drive.omega_1[0])
-        twist = p.phi_B + abs(float(self.drive.T_mot[0])) / p.C
-        resists = -float(self._recorded[1, : n // 4 + 1].mean())
+        """State and covariance at the first sample of each piece: the likeliest of several, since it may begin in the
+        middle of a swing. They are compared by a filter that follows what comes, so that a wrong one is not lost."""
+        return np.array([self._start(p, first, last) for first, last in self.drive.pieces])
+
+    def _start(self, p: Parameters, first: int, last: int) -> np.ndarray:
+        n, omega = min(round(COMPARED / self.drive.T_s), last - first), float(self.drive.omega_1[first])
+        twist = p.phi_B + abs(float(self.drive.T_mot[first])) / p.C
+        resists = -float(self._recorded[1, first : first + n // 4 + 1].mean())
         wide = p._replace(lack_1=max(p.lack_1, 0.1), lack_L=max(p.lack_L, 1.0))
         covariance = np.diag(np.square(START))
 
@@ -146,17 +150,18 @@ class Predictor:
             return np.concatenate([x, [covariance[at] for at in LOWER]])
 
         def cost(start: np.ndarray) -> float:
-            _, seen = self._pass(wide, start, n)
+            _, seen = self._pass(wide, start, first, first + n)
             return float(np.sum(seen[:2] ** 2 + seen[2:]))
 
         return min((begin(side, rate) for side, rate in product(SIDES, TWIST_RATES)), key=cost)
 
-    def _pass(self, p: Parameters, start: np.ndarray, n: int) -> list[np.ndarray]:
+    def _pass(self, p: Parameters, start: np.ndarray, first: int, last: int) -> list[np.ndarray]:
+        n = last - first
         r_L = self.noise.T_load if self.measured else UNMEASURED
         once = np.array([*p, self.noise.omega_1, self.noise.T_mot, r_L, *self.behind, self.drive.T_s], dtype=float)
         constant = np.tile(once[:, None], (1, n))
-        constant[len(p) + Noise._fields.index("T_mot")] *= self._noisy[:n]
-        given = self.drive.torque(p.late_T)[:n].T, self._recorded[:, 1 : n + 1], constant
+        constant[len(p) + Noise._fields.index("T_mot")] *= self._noisy[first:last]
+        given = self.drive.torque(p.late_T)[first:last].T, self._recorded[:, first + 1 : last + 1], constant
         return _filter().passed(n)(start, *given)
 
 

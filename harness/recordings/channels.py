@@ -1,7 +1,7 @@
 """The channels of a recording in SI units, with the checks that each of them has to pass alone."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from .format_detection import opened
 from .missing_values import FILLED, coded, holes
 from .quantities import QUANTITIES, aliases
 from .source import Column, Kept, RecordingError, Samples, not_finite
-from .time_base import MOST, WHOLE, Break, Cut, around, longest_piece, spread, time_breaks, typed
+from .time_base import MOST, WHOLE, Break, Cut, around, clean_pieces, spread, time_breaks, typed
 
 LEAST = 2
 """Samples that every recording has."""
@@ -59,6 +59,10 @@ class Channel:
     file_unit: FileUnit
     clock: str = "time"
     lacks: Sequence[Lack] = ()
+
+    def at(self, kept: np.ndarray, time: np.ndarray) -> "Channel":
+        """Some of its samples, by their indices, and their times."""
+        return replace(self, time=time, values=self.values[kept], where=Kept(self.where, kept))
 
 
 class Rows(NamedTuple):
@@ -128,6 +132,28 @@ class Channels:
                 any car has; time does not increase, has a gap or steps that no recording has; there are less than two
                 samples. The longest piece without all that is named.
         """
+        channels, breaks = self._read(quantities, optional, drawn)
+        if breaks:
+            raise _refusal(channels.values(), breaks)
+        return channels
+
+    def read_pieces(
+        self, *quantities: str, optional: Collection[str] = (), shortest: float
+    ) -> tuple[list[dict[str, Channel]], list[Break]]:
+        """The channels of each piece that lasts so long in s and can be used, and what is between the pieces; else as
+        `read`."""
+        channels, breaks = self._read(quantities, optional, False)
+        if not breaks:
+            return [channels], breaks
+        long = [(begin, end) for begin, end in _clean(channels.values(), breaks) if end - begin >= shortest]
+        if not long:
+            raise _refusal(channels.values(), breaks)
+        return [_between(channels, *piece) for piece in long], breaks
+
+    def _read(
+        self, quantities: Sequence[str], optional: Collection[str], drawn: bool
+    ) -> tuple[dict[str, Channel], list[Break]]:
+        """The channels, and where they cannot be used."""
         if missing := self.missing(*quantities):
             raise self.absence(missing)
         clock = [] if self._source.own_time else [self._chooser.needed("time")]
@@ -145,9 +171,7 @@ class Channels:
             gap = inf if drawn else min(QUANTITIES[channel.quantity].gap for channel in together)
             breaks += time_breaks(self.path, together[0].time, together[0].where, gap, jumps=drawn)
         breaks += [each for channel in channels.values() for each in _beyond_limit(self.path, channel)]
-        if breaks:
-            raise _refusal(list(channels.values()), breaks)
-        return channels
+        return channels, breaks
 
     def _rows(self, choice: Choice, samples: Samples) -> Rows:
         """The rows; what some write below the last time is none of them."""
@@ -295,11 +319,23 @@ def _beyond_limit(path: Path, channel: Channel) -> list[Break]:
     return breaks
 
 
-def _refusal(channels: Sequence[Channel], breaks: Sequence[Break]) -> RecordingError:
+def _clean(channels: Collection[Channel], breaks: Iterable[Break]) -> list[tuple[float, float]]:
+    begin, end = max(channel.time.min() for channel in channels), min(channel.time.max() for channel in channels)
+    return clean_pieces(float(begin), float(end), breaks)
+
+
+def _between(channels: Mapping[str, Channel], begin: float, end: float) -> dict[str, Channel]:
+    """What was sampled together still is."""
+    times = {id(channel.time): channel.time for channel in channels.values()}
+    kept = {k: np.flatnonzero((time >= begin) & (time <= end)) for k, time in times.items()}
+    cut = {k: time[kept[k]] for k, time in times.items()}
+    return {name: of.at(kept[id(of.time)], cut[id(of.time)]) for name, of in channels.items()}
+
+
+def _refusal(channels: Collection[Channel], breaks: Sequence[Break]) -> RecordingError:
     """What to say of breaks: the first, and the longest piece without any."""
     problem, advice = breaks[0].problem, breaks[0].advice
-    begin, end = max(channel.time.min() for channel in channels), min(channel.time.max() for channel in channels)
-    piece = longest_piece(float(begin), float(end), breaks)
-    if piece:
-        advice += f"; the longest piece without is --from {typed(piece[0])} --to {typed(piece[1])}"
+    if pieces := _clean(channels, breaks):
+        begin, end = max(pieces, key=lambda piece: piece[1] - piece[0])
+        advice += f"; the longest piece without is --from {typed(begin)} --to {typed(end)}"
     return RecordingError(problem, advice)

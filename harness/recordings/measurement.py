@@ -15,7 +15,8 @@ from .plausibility import of_channels
 from .relations import check_relations
 from .signal_checks import check_signal, too_slow
 from .source import RecordingError
-from .time_base import WHOLE, Cut
+from .thresholds import Threshold
+from .time_base import WHOLE, Break, Cut
 
 BASE = "omega_1"
 """Whose samples are the time base."""
@@ -28,6 +29,12 @@ LOADED = [load for form in LOADS for load in form]
 
 MESSAGE = ("valid", "counter")
 
+PIECE = Threshold(
+    1.0, "s", "length of a piece between gaps from which on it is used", "the filter has found its state after 0.2 s"
+)
+NAMED = 3
+"""Gaps that are named one by one."""
+
 HELD = (*MESSAGE, "T_ref")
 """What a recording may have beside them, and what holds until the next sample."""
 
@@ -38,7 +45,7 @@ class Measurement:
 
     Attributes:
         name: of the file, without its ending.
-        time: in s, as recorded, strictly increasing.
+        time: in s, as recorded, strictly increasing; what cannot be used is left out, so that it may have gaps.
         T_mot: motor torque in N.m.
         omega_1: motor speed in rad/s.
         omega_2: wheel speed times i in rad/s.
@@ -100,44 +107,64 @@ def read_measurement(
     wheels, loads = _present(recording, WHEEL_SPEEDS) or ("omega_wheel",), _present(recording, LOADS)
     _require_columns(recording, BASE, "T_mot", *wheels)
     held = [quantity for quantity in HELD if recording.has(quantity)]
-    channels = recording.read(BASE, "T_mot", *wheels, *loads, *held, optional=(*loads, *held))
+    needed = (BASE, "T_mot", *wheels, *loads, *held)
+    pieces, breaks = recording.read_pieces(*needed, optional=(*loads, *held), shortest=PIECE)
+    pieces.sort(key=lambda piece: -np.ptp(piece[BASE].time))
+    channels = pieces[0]  # the longest, by which the recording is judged
     held = [quantity for quantity in held if quantity in channels]
     loads = loads if all(load in channels for load in loads) else ()
-    channels = {quantity: each for quantity, each in channels.items() if quantity not in LOADED or quantity in loads}
-    judged = [channel for quantity, channel in channels.items() if quantity not in MESSAGE]
+    judged = [
+        channel
+        for quantity, channel in channels.items()
+        if quantity not in MESSAGE and (quantity not in LOADED or quantity in loads)
+    ]
     for channel in judged:
         check_signal(path, channel)
     received = {
         *held,
         *(wheel for wheel in wheels if is_slower(channels[wheel], channels[BASE])),
     }
-    time, values = aligned(channels, BASE, received)
-    signals = {"T_mot": values["T_mot"], BASE: values[BASE], "omega_2": _wheel_speed(channels, values, wheels, i, r)}
-    if loads:
-        signals["T_load"] = _load(values, loads, i)
-    if "T_ref" in values:
-        signals["T_ref"] = values["T_ref"]
+    parts = []
+    for piece in pieces:
+        kept = {quantity: of for quantity, of in piece.items() if quantity not in LOADED or quantity in loads}
+        time, values = aligned(kept, BASE, received)
+        signals = {"T_mot": values["T_mot"], BASE: values[BASE], "omega_2": _wheel_speed(kept, values, wheels, i, r)}
+        if loads:
+            signals["T_load"] = _load(values, loads, i)
+        parts.append({"time": time, **signals, **{name: values[name] for name in held}})
+    signals = {name: parts[0][name] for name in ("T_mot", BASE, "omega_2", "T_load", "T_ref") if name in parts[0]}
+    interval = float(np.median(np.diff(parts[0]["time"])))
+    parts.sort(key=lambda part: part["time"][0])
+    values = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     headings = {quantity: channels[quantity].heading for quantity in ("T_mot", BASE, "T_ref") if quantity in channels}
     headings |= {
         q: " and ".join(channels[one].heading for one in of) for q, of in (("omega_2", wheels), ("T_load", loads))
     }
-    interval = float(np.median(np.diff(time)))
     check_relations(path, headings, interval, signals)
     return Measurement(
         path.stem,
-        time,
-        signals["T_mot"],
-        signals["omega_1"],
-        signals["omega_2"],
+        values["time"],
+        values["T_mot"],
+        values["omega_1"],
+        values["omega_2"],
         values["valid"] > 0.5 if "valid" in values else None,
         values.get("counter"),
-        signals.get("T_load"),
-        signals.get("T_ref"),
+        values.get("T_load"),
+        values.get("T_ref"),
         {quantity: heading for quantity, heading in headings.items() if heading},
         estimated(interval, signals),
-        [f"{path}, {finding}" for finding in of_channels(judged)],
+        [*_between(breaks, len(parts)), *(f"{path}, {finding}" for finding in of_channels(judged))],
         _written(channels, wheels, loads, i, r),
     )
+
+
+def _between(breaks: Sequence[Break], pieces: int) -> list[str]:
+    """What to say of what is between pieces."""
+    what = [each.problem for each in breaks[:NAMED]]
+    if breaks[NAMED:]:
+        what.append(f"and {len(breaks) - NAMED} more")
+    used = f"{pieces} pieces are" if pieces > 1 else "one piece is"
+    return [f"{'; '.join(what)}: {used} used, each of {PIECE:g} s or more"] if breaks else []
 
 
 def _require_columns(recording: Channels, *needed: str) -> None:

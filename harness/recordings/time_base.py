@@ -95,15 +95,13 @@ def around(time: np.ndarray, first: int, last: int, problem: str) -> Break:
     return Break(before.max(initial=-inf), after.min(initial=inf), problem)
 
 
-def longest_piece(begin: float, end: float, breaks: Iterable[Break]) -> tuple[float, float] | None:
-    """The longest time in s without a break."""
+def clean_pieces(begin: float, end: float, breaks: Iterable[Break]) -> list[tuple[float, float]]:
+    """The times in s without a break, from when to when."""
     pieces, at = [], begin
     for each in sorted(breaks):
         pieces.append((at, min(each.end, end)))
         at = max(at, each.begin)
-    pieces.append((at, end))
-    longest = max(pieces, key=lambda piece: piece[1] - piece[0])
-    return longest if longest[1] > longest[0] else None
+    return [piece for piece in [*pieces, (at, end)] if piece[1] > piece[0]]
 
 
 def spread(time: np.ndarray) -> np.ndarray:

@@ -177,7 +177,7 @@ def through(size: np.ndarray, phi: np.ndarray | None = None, o_T: float = 0.0, o
     x = np.zeros((n, len(State._fields)))
     x[:, at.phi] = 0.0 if phi is None else phi
     x[-1, at.o_T], x[-1, at.o_L] = o_T, o_L
-    return Predicted(np.vstack([size, np.ones(n)]), np.zeros((2, n)), x, slice(100, None))
+    return Predicted(np.vstack([size, np.ones(n)]), np.zeros((2, n)), x, np.arange(100, n))
 
 
 def test_a_zero_that_is_off_is_named_from_its_threshold_on() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from driveline.harness.identification.drive_train import STEPS
 from driveline.harness.identification.identify import of_sensors
-from driveline.harness.identification.model_inputs import UNEVEN, drive_of
+from driveline.harness.identification.model_inputs import GAP, UNEVEN, drive_of
 from driveline.harness.identification.torque_loop import MET, TorqueLoop
 from driveline.harness.recordings.measurement import Measurement
 from driveline.harness.recordings.source import RecordingError
@@ -61,7 +61,7 @@ def test_where_the_demand_explains_the_torque_it_has_no_noise_and_elsewhere_it_i
     np.testing.assert_array_equal(drive.T_mot[at], given.T_mot[at])
     assert drive.exact[100:].mean() > 0.9
     assert np.abs(drive.T_mot - exact)[drive.exact].max() < MET * 0.3
-    assert of_sensors(given).T_mot == pytest.approx(0.3, rel=0.1)
+    assert of_sensors(drive, given.T_mot).T_mot == pytest.approx(0.3, rel=0.1)
 
 
 @pytest.mark.parametrize(("share", "used"), [(0.89, False), (0.91, True)])
@@ -78,6 +78,21 @@ def test_a_demand_that_does_not_explain_the_torque_does_not_replace_it(share: fl
     assert np.array_equal(drive.T_mot, given.T_mot) != used
 
 
+@pytest.mark.parametrize("samples", [1.01 * GAP, 300.0])
+def test_a_gap_parts_two_pieces_and_no_torque_is_between_them(samples: float) -> None:
+    time = T_S * (np.arange(1000) + (samples - 1.0) * (np.arange(1000) >= 600))
+    drive, _ = drive_of(recording(time))
+    assert drive.pieces == [(0, 599), (600, 999)]
+    assert drive.longest == slice(0, 600)
+    assert drive.T_s == pytest.approx(T_S)
+    torque = drive.torque(0.0007)
+    assert np.flatnonzero(np.isnan(torque[:, 0])).tolist() == [599]
+    for piece, (first, last) in zip(map(drive.between, (0, 600), (599, 999)), drive.pieces, strict=True):
+        assert piece.starts == (0,)
+        np.testing.assert_allclose(torque[first:last], piece.torque(0.0007), rtol=1e-12)
+    assert drive.between(100, 800).pieces == [(0, 499), (500, 700)]
+
+
 def test_uneven_samples_are_refused_with_the_place() -> None:
     """A sample that comes late makes one interval long and the next short."""
     for late in (0.9 * UNEVEN, -0.9 * UNEVEN):
@@ -88,6 +103,8 @@ def test_uneven_samples_are_refused_with_the_place() -> None:
     time[200:] += 0.2 * T_S
     with pytest.raises(RecordingError, match=r"drive: samples must be 0\.002001 s apart to within 5 %; after 0\.898 s"):
         drive_of(recording(time))
+    with pytest.raises(RecordingError, match=r"after .* s it is .* s; record at a fixed rate"):
+        drive_of(recording(np.delete(TIME, np.arange(102, 390, 2))))
     time = TIME.copy()
     time[200] += 1.1 * UNEVEN * T_S
     with pytest.raises(RecordingError, match=r"after 0\.(898|9) s it is 0\.00(211|189) s"):

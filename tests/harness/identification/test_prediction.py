@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from driveline.harness.identification.drive_train import Parameters, State
+from driveline.harness.identification.free_runs import free_runs
 from driveline.harness.identification.model_inputs import Drive
 from driveline.harness.identification.prediction import Noise, Predicted, Predictor
 from tests.harness.identification.simulated import BEHIND, NOISE, SPARE, P, predictor, simulated, states
@@ -85,10 +86,23 @@ def test_a_recording_that_begins_in_the_middle_of_a_swing_is_explained_as_well()
     drive = predictor().drive
     for first in range(100, 700, 100):
         through = of(drive.between(first, len(drive)))
-        assert through.counted == slice(SETTLED, len(drive) - first - LAST)
+        np.testing.assert_array_equal(through.counted, np.arange(SETTLED, len(drive) - first - LAST))
         np.testing.assert_allclose(through.rms, 1.0, atol=0.1)
         counted = through.size[:, SETTLED:-LAST] ** 2 + through.log_S[:, SETTLED:-LAST]
         assert through.cost == pytest.approx(0.5 * counted.sum())
+
+
+def test_pieces_are_predicted_each_for_itself() -> None:
+    drive = predictor().drive
+    parted = of(replace(drive, starts=(0, 600)))
+    for first, last in ((0, 599), (600, len(drive))):
+        alone = of(drive.between(first, last))
+        np.testing.assert_allclose(parted.size[:, first:last], alone.size, rtol=1e-9)
+        np.testing.assert_array_equal(np.intersect1d(parted.counted, np.arange(first, last)), first + alone.counted)
+    at, runs = free_runs(Predictor(replace(drive, starts=(0, 600)), NOISE, BEHIND), P, parted.states, SETTLED)
+    assert at[:, 0].tolist() == [101, 701, 951, 1201]
+    assert at[:, -1].tolist() == [350, 950, 1200, 1450]
+    assert np.sqrt(np.mean((runs[..., 0] - drive.omega_1[at]) ** 2)) < 1.0
 
 
 def test_the_errors_are_those_of_the_motor_speed() -> None:

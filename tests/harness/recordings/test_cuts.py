@@ -9,7 +9,7 @@ import pytest
 
 from driveline.harness.commands.recorded import instant
 from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.measurement import read_measurement
+from driveline.harness.recordings.measurement import PIECE, read_measurement
 from driveline.harness.recordings.source import RecordingError
 from driveline.harness.recordings.time_base import Cut
 from tests.harness.recordings.car import RADIUS, RATIO, drive
@@ -120,6 +120,25 @@ def test_a_part_without_a_sample_is_refused(tmp_path: Path, cut: Cut) -> None:
     of_text(path)
     with pytest.raises(RecordingError, match=r"no sample is within --.*; it goes from 0 to 1\.99 s"):
         read_drive(path, cut=cut)
+
+
+@pytest.mark.parametrize(("last", "pieces"), [(PIECE - 0.002, 2), (PIECE, 3)])
+def test_of_a_test_drive_with_gaps_all_pieces_that_are_long_enough_are_used(
+    write: Write, last: float, pieces: int
+) -> None:
+    """From 0 to 3 s, 3.5 to 8 s less a torque that none is, and so long at the end."""
+    one = drive()
+    kept = (one["time"] <= 3.0) | ((one["time"] >= 3.5) & (one["time"] <= 8.0)) | (one["time"] >= 10.0 - last - 1e-9)
+    torque = np.where(one["time"] == 5.0, 20e3, one["T_mot"])
+    names = {"time [s]": one["time"], "T_mot [N.m]": torque, "T_load [N.m]": one["T_load"]}
+    names |= {f"{name} [rad/s]": one[name] for name in ("omega_1", "omega_2")}
+    found = read_measurement(write({name: values[kept] for name, values in names.items()}), RATIO, RADIUS)
+    used = kept & (one["time"] != 5.0) & ((one["time"] <= 8.0) | (pieces == 3))
+    np.testing.assert_allclose(found.time, one["time"][used])
+    np.testing.assert_allclose(found.omega_1, one["omega_1"][used], rtol=1e-8)
+    (warning,) = found.warnings
+    assert "gap of 0.5 s after 3 s; at most 0.006 s (3 times the median step) is allowed;" in warning
+    assert warning.endswith(f"{pieces + 1} pieces are used, each of 1 s or more")
 
 
 def test_a_part_of_a_test_drive_is_that_part(write: Write) -> None:

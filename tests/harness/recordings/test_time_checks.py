@@ -13,7 +13,7 @@ from driveline.harness.recordings import channels
 from driveline.harness.recordings.channels import Channels
 from driveline.harness.recordings.quantities import QUANTITIES
 from driveline.harness.recordings.source import Column, RecordingError, Samples
-from driveline.harness.recordings.time_base import Break, longest_piece, spread, time_breaks
+from driveline.harness.recordings.time_base import Break, clean_pieces, spread, time_breaks
 
 JUST = 1e-6
 """How far from the longest step, as a share of it."""
@@ -75,21 +75,21 @@ def test_messages_may_stay_away_for_longer_unless_they_share_the_time_of_a_senso
 
 
 @pytest.mark.parametrize(
-    ("breaks", "piece"),
+    ("breaks", "pieces"),
     [
-        ([], (0.0, 10.0)),
-        ([(3.0, 4.0)], (4.0, 10.0)),
-        ([(7.0, 9.0), (2.0, 2.5)], (2.5, 7.0)),
-        ([(2.0, 8.0), (3.0, 4.0)], (0.0, 2.0)),
-        ([(8.0, inf)], (0.0, 8.0)),
-        ([(-inf, 1.0)], (1.0, 10.0)),
-        ([(-inf, inf)], None),
+        ([], [(0.0, 10.0)]),
+        ([(3.0, 4.0)], [(0.0, 3.0), (4.0, 10.0)]),
+        ([(7.0, 9.0), (2.0, 2.5)], [(0.0, 2.0), (2.5, 7.0), (9.0, 10.0)]),
+        ([(2.0, 8.0), (3.0, 4.0)], [(0.0, 2.0), (8.0, 10.0)]),
+        ([(8.0, inf)], [(0.0, 8.0)]),
+        ([(-inf, 1.0)], [(1.0, 10.0)]),
+        ([(-inf, inf)], []),
     ],
 )
-def test_the_longest_piece_is_the_one_between_the_breaks(
-    breaks: list[tuple[float, float]], piece: tuple[float, float] | None
+def test_clean_pieces_are_those_between_the_breaks(
+    breaks: list[tuple[float, float]], pieces: list[tuple[float, float]]
 ) -> None:
-    assert longest_piece(0.0, 10.0, [Break(*each, "") for each in breaks]) == piece
+    assert clean_pieces(0.0, 10.0, [Break(*each, "") for each in breaks]) == pieces
 
 
 @pytest.mark.parametrize("resolution", [0.2, 0.25, 0.5])
