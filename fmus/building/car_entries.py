@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from ..catalogue import FMUS
 from ..description.variables import Variable
-from .estimates import LAWS, law
+from .estimates import HEAVIEST, LAWS, law
 from .one_car import DAMPERS, FOLLOW, INSTEAD, MEASURED, SHAFTS, WHEELS, WITH_MASS, of_one_car
 from .parameter_files import car_names, declarations, of_vehicle
 
@@ -133,6 +133,8 @@ def _entry(
         origin, full = SET, entries
     elif name in full and name in LAWS and not measured and not (name == "C" and any(k in entries for k in SHAFTS)):
         origin, source = ESTIMATED, ", ".join(law(name, entries))
+    elif name == "F_z0" and full.get(name) == HEAVIEST:
+        origin, source = ESTIMATED, "m"
     elif name in full:
         origin, source = FOLLOWS, measured or ("k_s" if name in SHAFTS and "k_s" in entries else SOURCES[name])
     return Entry(name, full.get(name, variable.start), variable.unit, _meaning(variable), origin, source, blocks)

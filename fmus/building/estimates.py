@@ -10,6 +10,7 @@ electric cars that would bear one. An estimate is a product of powers, so a car 
     phi_B   ~ i            the same gap at the wheel
     c_slip  ~ F_z0, m      tyres pull in proportion to their load (H. B. Pacejka, "Tire and Vehicle Dynamics", 3rd ed.,
                            2012, section 4.3: the slip stiffness over the load hardly changes)
+    F_z0    ~ m            up to what a driven axle may carry in the European Union
 """
 
 from collections.abc import Mapping
@@ -25,6 +26,9 @@ LAWS: Mapping[str, Mapping[str, float]] = {
     "c_slip": {"F_z0": 1.0},
 }
 """Of what is estimated the exponents of what it follows from."""
+
+HEAVIEST = 11500.0 * CAR.g
+"""In N, of a driven axle (Council Directive 96/53/EC, Annex I, 3.4.1)."""
 
 DECIDE = (*LAWS, "tau")
 """What decides how good the damping is and stands in no data sheet."""
@@ -46,6 +50,9 @@ def estimated(given: Mapping[str, float]) -> dict[str, float]:
     """
     usual = {"F_z0": Parameters().F_z0, **CAR._asdict()}
     found: dict[str, float] = {}
+    if "F_z0" not in given and usual["F_z0"] * given.get("m", 0.0) / usual["m"] > HEAVIEST:
+        given = {**given, "F_z0": HEAVIEST}
+        found["F_z0"] = HEAVIEST
     for name in LAWS:
         if name not in given and (powers := law(name, given)):
             found[name] = usual[name]

@@ -122,11 +122,11 @@ def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, 
 def with_estimates(entries: Mapping[str, Any]) -> dict[str, Any]:
     """The entries of a vehicle file with all that is estimated or follows from what was measured: if one of them is
     turned then, the others stay."""
-    measured = {name for by, names in INSTEAD.items() if by in entries for name in names}
-    usual = {name: DEFAULT_CAR[name] for name in LAWS if name != "C" or not any(k in entries for k in SHAFTS)}
-    full = of_one_car(entries, FOLLOW if measured else ())
-    kept = {name: full[name] for name in full if name in entries or name in {*LAWS, *measured} - {*SHAFTS}}
-    return usual | kept
+    elastic = any(name in entries for name in SHAFTS)
+    usual = {name: DEFAULT_CAR[name] for name in LAWS}
+    full = of_one_car(entries, FOLLOW) if "damping_ratio" in entries else of_one_car(entries, ())
+    kept = {name: value for name, value in full.items() if name in {*entries, *usual, *DAMPERS, "F_z0"}}
+    return {name: value for name, value in {**usual, **kept}.items() if name != "C" or "C" in entries or not elastic}
 
 
 def updated(entries: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from .arguments import option
 from .jobs import distinguishing, job
 from .options import FmuFolder, OurController, Replacing, output, record
 from .printing import JsonPrinting
+from .settings import warn_of_gains
 
 
 @record
@@ -36,6 +37,7 @@ def run(args: Arguments) -> int:
     from ..studies.margins.analysis_report import announce, write
     from ..studies.margins.loop_analysis import analyse
 
+    warn_of_gains(args.vehicle, args.parameters)
     loops = [Settings(plant, args.controller, folder=args.fmus) for plant in dict.fromkeys(args.plant or PLANTS)]
     given = {each.plant_name: built_with(each, args.vehicle, args.parameters, {}) for each in loops}
     same = {plant: distinguishing(each) for plant, each in given.items()}

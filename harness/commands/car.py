@@ -1,7 +1,8 @@
-"""Says what a vehicle file makes of a car: each entry with its value and unit, whether the file sets it, it follows
-from others or stays as in the default car, and which blocks take it. Then what comes of them: at which frequency the
-drive train swings in either plant at 15 km/h, its damping ratio without and with control, the backlash at the wheel,
-and how much torque the control may take and add. docs/control.md says what follows from what.
+"""Says what a vehicle file makes of a car: the entries that decide, each with its value, where it is from, and what it
+costs if the car has half or twice of what the file does not tell; --all has every entry, and which blocks take it. Then
+what comes of them: at which frequency the drive train swings in either plant at 15 km/h, its damping ratio without and
+with control, the backlash at the wheel, and how much torque the control may take and add. docs/control.md says what
+follows from what.
 
 With control means with the gains of --parameters, or else with those that `driveline design` computes for this car.
 --template writes a commented vehicle file instead: the default car, to be changed.
@@ -9,6 +10,7 @@ With control means with the gains of --parameters, or else with those that `driv
 examples:
   driveline car my.toml
   driveline car examples/cars/van.toml --parameters van_gains.toml
+  driveline car examples/cars/id3.toml --all
   driveline car                                             the default car
   driveline car my.toml --json
   driveline car --template --output my.toml
@@ -18,7 +20,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import DrivelineError
+from .analyse import finite
 from .arguments import option, positional
+from .lacking import lacking
 from .options import Replacing, file, file_of, record
 from .printing import JsonPrinting, write_toml
 
@@ -30,6 +34,7 @@ if TYPE_CHECKING:
 class Arguments(Replacing, JsonPrinting):
     vehicle: Path | None = positional("the car (default: that of all blocks)", file, "FILE.toml", "?")
     parameters: Path | None = file_of("what is set in the controller (default: what `driveline design` computes)")
+    all: bool = option(False, "every entry, and what takes it")
     template: bool = option(False, "write a commented vehicle file")
     output: Path | None = file_of("of the template (default: it is printed)")
 
@@ -53,18 +58,21 @@ def run(args: Arguments) -> int:
     except DesignError as reason:
         gains, origin = None, f"no gains: {' '.join(str(reason).splitlines())}"
     found = car_properties(values, gains)
+    unknown = lacking(values) if args.vehicle and gains else ()
     if not args.silent:
-        announce(entries, found, str(args.vehicle or "the default car"), origin)
+        announce(entries, found, unknown, str(args.vehicle or "the default car"), origin, args.all)
     plants = [_of_plant(plant) for plant in found.plants]
     properties = {**found._asdict(), "plants": plants}
-    args.document({"entries": [each._asdict() for each in entries], "gains": origin, "properties": properties})
+    worth = {each.entry.name: {"settling": finite(each.settling), "overshoot": each.overshoot} for each in unknown}
+    entries = [{**each._asdict(), "worth": worth.get(each.name)} for each in entries]
+    args.document({"entries": entries, "gains": origin, "properties": properties})
     return 0
 
 
 def _template(args: Arguments) -> int:
     from ...fmus.building.car_entries import template
 
-    if args.vehicle is not None or args.parameters is not None or args.json:
+    if args.vehicle is not None or args.parameters is not None or args.json or args.all:
         raise DrivelineError("--template writes the default car: it goes with --output and --replace alone")
     if args.output is None:
         print(template(), end="")

@@ -22,6 +22,7 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.run_metrics import Metrics
 from ..views.metrics_table import legend
 from .jobs import RunJob, distinguishing, job
+from .lacking import lacking_line
 from .manoeuvres import Chosen, Listing, chosen, manoeuvre
 from .options import Figures, Loop, Replacing, Report, SignalsFormat, controller, output, plants, record
 from .printing import JsonPrinting
@@ -52,6 +53,7 @@ def run(args: Arguments) -> int:
     from ..views.terminal import print_runs
 
     requested = args.manoeuvre if args.manoeuvre.manoeuvres else chosen(COMPARED)
+    requested = requested.for_car(next(iter(by_name.values())).parameters)
     given = {str(each.plant): each for each in by_name.values()}
     manoeuvres, read = requested.manoeuvres, list(requested.files.values())
     options = args.options(caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
@@ -73,6 +75,8 @@ def run(args: Arguments) -> int:
             _report(outcomes, manoeuvres, given, provenance, path)
         builds = ", ".join(f"{each.plant_name} {each.build}" for each in given.values())
         args.say(f"FMUs: {builds}; signals of {len(outcomes)} runs: {args.output / 'runs'}")
+        if lacks := lacking_line(args.vehicle):
+            args.say(lacks)
         made.tell(print_runs, [each.row for each in outcomes], title, runs=[each.record for each in outcomes])
     return 0
 

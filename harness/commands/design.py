@@ -16,10 +16,13 @@ examples:
 
 from importlib.metadata import version
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from ..base.errors import DrivelineError
+from ..loop.places import PLANTS
 from .design_search import Search, require_search, run_search
+from .lacking import lacking_line
 from .options import file_of, record
 from .printing import write_toml
 
@@ -28,7 +31,9 @@ if TYPE_CHECKING:
 
 COMMENT = """\
 Gains of the DampingController for {car}, by `driveline design` (driveline-damping {version}).
-Drive train: {alone.frequency:.2f} Hz; damped: {damped.frequency:.2f} Hz, damping ratio {damped.damping_ratio:.2f}."""
+Drive train of the design model at 15 km/h: {0.frequency:.2f} Hz, damping ratio {0.damping_ratio:.3f}.
+With control: {1.frequency:.2f} Hz, damping ratio {1.damping_ratio:.2f}
+({meant})."""
 
 
 @record
@@ -42,12 +47,14 @@ def run(args: Arguments) -> int:
             raise DrivelineError("--parameters has limits for computed gains: leave it out, or --search")
         return run_search(args, args.search)
     require_search(args)
-    text = designed(args.vehicle, limits=args.parameters)
+    text, lacks = designed(args.vehicle, limits=args.parameters), lacking_line(args.vehicle)
     if args.output is None and not args.silent:
         print(text.rstrip())
     elif args.output is not None:
         write_toml(text, args.output, args.replace)
         args.say(f"gains: {args.output}")
+    if lacks and not args.silent:
+        print(lacks if args.output else "\n".join(f"# {line}" for line in wrap(lacks, 118)))
     return 0
 
 
@@ -66,21 +73,28 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None, limi
     from ..design.design import AUTHORITY, gains_file, gains_of
     from ..design.design_weights import WEIGHTS, records
     from ..design.kalman import DesignError
-    from ..studies.margins.modes import swing
+    from ..studies.margins.car_properties import swing
+    from ..studies.margins.modes import MEANT
 
-    plant, motor, can = records(read_vehicle(vehicle) if vehicle else {})
+    entries = read_vehicle(vehicle) if vehicle else {}
     require_taken(limits, AUTHORITY, f"a file of limits ({' and '.join(AUTHORITY)})")
     most = read_parameters(limits) if limits else {}
     if nothing := [name for name in most if most[name] == 0.0]:
         raise ParameterFileError(f"{limits}: {nothing[0]} = 0: a limit must be above 0 N.m")
+    plant, motor, can = records(entries)
     gains = gains_of(plant, motor, can, weights or WEIGHTS, most)
-    alone, damped = swing(plant, motor, gains | dict.fromkeys(AUTHORITY, motor.T_max))  # too small for any limit
-    if damped.damping_ratio <= alone.damping_ratio:
+    # the limits of a user may be too small for any linear loop
+    train = swing(PLANTS[0], entries, gains | dict.fromkeys(AUTHORITY, motor.T_max))
+    if train.damped is None or train.damped.damping_ratio <= train.damping_ratio:
+        would = (
+            f"damping ratio would be {train.damped.damping_ratio:.2f}" if train.damped else "loop would not be stable"
+        )
         raise DesignError(
-            f"the motor is too slow for this car (tau = {motor.tau:g} s, drive train {alone.frequency:.2f} Hz): "
-            f"the damping ratio would be {damped.damping_ratio:.2f}, it is {alone.damping_ratio:.2f} without damping"
+            f"the motor is too slow for this car (tau = {motor.tau:g} s, drive train {train.frequency:.2f} Hz): the "
+            f"{would}; without control the damping ratio is {train.damping_ratio:.2f}"
         )
     car = vehicle.name if vehicle else "the default car"
     if weights and weights.washout != WEIGHTS.washout:
         car += f", with the washout at {weights.washout / WEIGHTS.washout:.2f} of its frequency"
-    return gains_file(gains, COMMENT.format(car=car, version=version("driveline-damping"), alone=alone, damped=damped))
+    comment = COMMENT.format(train, train.damped, car=car, version=version("driveline-damping"), meant=MEANT)
+    return gains_file(gains, comment)

@@ -14,6 +14,7 @@ examples:
 from pathlib import Path
 
 from ..manoeuvres.catalogue import MANOEUVRES
+from ..manoeuvres.for_car import for_car
 from .arguments import option
 from .manoeuvres import Chosen, Listing, manoeuvre
 from .options import Loop, controllers, output, plants, record
@@ -33,8 +34,10 @@ class Arguments(Headings, Listing, Loop, Printing):
 
 
 def run(args: Arguments) -> int:
-    offered = args.manoeuvre.beside(MANOEUVRES)
+    args.manoeuvre.beside(MANOEUVRES)
     given = all_settings(args, args.plant, args.controller)
+    of_car = next(iter(given.values())).parameters
+    offered = args.manoeuvre.for_car(of_car).beside({name: for_car(each, of_car) for name, each in MANOEUVRES.items()})
     # here and not above: mistakes and help are answered without them
     import webbrowser
 

@@ -1,6 +1,7 @@
 """What the options of a run say: its settings, and what tells runs apart."""
 
 import dataclasses
+import logging
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from shlex import quote
@@ -12,11 +13,14 @@ from ..loop.settings import Settings
 from ..views.metrics_table import DAMPINGS
 from .options import OTHERS, Loop
 
+LOG = logging.getLogger(__name__)
 
-def settings(args: Loop, plant: str, controller: str, **run: Any) -> Settings:
+
+def settings(args: Loop, plant: str, controller: str, silent: bool = False, **run: Any) -> Settings:
     """What the options say for a plant and a controller; the FMUs are there then.
 
     Args:
+        silent: not to warn of gains, as that was done for another loop.
         run: fields of the settings that no option of the loop gives.
 
     Raises:
@@ -39,7 +43,15 @@ def settings(args: Loop, plant: str, controller: str, **run: Any) -> Settings:
         limits=args.limits,
         **run,
     )
+    if not silent:
+        warn_of_gains(args.vehicle, args.parameters)
     return built_with(given, args.vehicle, args.parameters, dict(args.set))
+
+
+def warn_of_gains(vehicle: Path | None, parameters: Path | None) -> None:
+    """Says that a car is driven with the gains of another one."""
+    if vehicle is not None and parameters is None:
+        LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
 
 
 def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) -> dict[tuple[str, str], Settings]:
@@ -66,12 +78,12 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
         refusals = []
         for name, controller in each.items():
             try:
-                made = settings(args, plant, controller)
+                made = settings(args, plant, controller, silent=bool(found))
             except NotTaken as refusal:
                 refusals.append(refusal)
                 if len(refusals) == len(each):
                     raise refusals[0] from None
-                made = settings(dataclasses.replace(args, parameters=None), plant, controller)
+                made = settings(dataclasses.replace(args, parameters=None), plant, controller, silent=True)
             found[made.plant_name, name] = made
     return found
 

@@ -41,11 +41,12 @@ class Arguments(Listing, OneRun, Figures, JsonPrinting):
 
 
 def run(args: Arguments) -> int:
-    manoeuvre = args.manoeuvre.first
-    options = _options_of_figure(args, manoeuvre)
+    options = _options_of_figure(args, args.manoeuvre.first)
     given = settings(args, args.plant, args.controller).replace(
         control=args.control == "on", step_size=args.step, scheme=Scheme(args.scheme)
     )
+    chosen = args.manoeuvre.for_car(given.parameters)
+    manoeuvre = chosen.first
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.experiment import require_steps
     from ..cosimulation.schedule import described, transfers
@@ -60,7 +61,7 @@ def run(args: Arguments) -> int:
     same = {"manoeuvre": manoeuvre.name, "step_size": args.step, "scheme": args.scheme} | args.manoeuvre.digests
     with signals_job(args, given, manoeuvre, same, args.manoeuvre.files.values()) as (made, stem):
         fitted = made.fits[given.plant_name]
-        require_possible(*args.manoeuvre, made.fits, {given.plant_name: given})
+        require_possible(*chosen, made.fits, {given.plant_name: given})
         args.say(f"{manoeuvre.name} on {given.plant_name}, {given.build} FMUs, damping {args.control}")
         results = simulate(manoeuvre, given)
         made.begin()

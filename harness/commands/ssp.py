@@ -50,14 +50,15 @@ def run(args: Arguments) -> int:
     from ..loop.built_fmus import made_if_missing
     from ..manoeuvres.drivable import require_possible
 
-    manoeuvre, ssp = args.manoeuvre.first, args.output / "driveline.ssp"
+    chosen = args.manoeuvre.for_car(next(iter(given.values())).parameters)
+    manoeuvre, ssp = chosen.first, args.output / "driveline.ssp"
     same: dict[str, Any] = {name: distinguishing(each, manoeuvre) for name, each in given.items()}
     plants = list(dict.fromkeys(args.plant or PLANTS))
     same |= {"plants": plants, "manoeuvre": manoeuvre.name} | args.manoeuvre.digests
     source = made_if_missing(MANOEUVRE, args.fmus, next(iter(given.values())).build or BUILDS[0])
     sourced = {name: with_source(loop(each), source) for name, each in given.items()}
     with job(args, args.output / "driveline.json", same, sourced, [ssp], args.manoeuvre.files.values()) as made:
-        require_possible(*args.manoeuvre, made.fits, given)
+        require_possible(*chosen, made.fits, given)
         variants = {name: _variant(fitted, manoeuvre, given[name]) for name, fitted in made.fits.items()}
         content = package(variants, manoeuvre)
         made.begin()

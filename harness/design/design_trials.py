@@ -14,6 +14,7 @@ from ..loop.places import PLACES
 from ..loop.settings import Settings
 from ..loop.settings import settings as settings_of
 from ..manoeuvres.catalogue import MANOEUVRES
+from ..manoeuvres.for_car import for_car
 from ..metrics.declaration import declared
 from ..metrics.evaluate import evaluate
 from ..metrics.run_metrics import Metrics
@@ -73,7 +74,10 @@ def settled(
 ) -> tuple[float, float]:
     """Settling time in s and overshoot (1) of a loop with damping, parameters as `instance.name` -> value; settings of
     the run beside those."""
-    course, made = MANOEUVRES[manoeuvre], settings_of(settings, plant=plant, parameters=parameters, seed=seed)
+    course, made = (
+        for_car(MANOEUVRES[manoeuvre], parameters),
+        settings_of(settings, plant=plant, parameters=parameters, seed=seed),
+    )
     metrics = evaluate(simulate(course, made), course)
     return metrics.settling_time, metrics.overshoot
 

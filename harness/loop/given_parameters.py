@@ -78,8 +78,6 @@ def _of_files(
     except ParameterFileError as refusal:
         raise NotTaken(str(refusal)) from refusal
     meant = {name: unit for name, unit in units().items() if name in values}
-    if vehicle is not None and parameters is None:
-        LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
     plant = system.instances["plant"]
     car: dict[str, float] = {}
     if "plant" not in system.own and vehicle is not None:

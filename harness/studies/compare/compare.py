@@ -131,7 +131,7 @@ def write_figures(
     from ...views.step_figure import plot_step
 
     def is_drawn(name: str) -> bool:
-        usual = manoeuvres[name] is MANOEUVRES.get(name) and name in COMPARED
+        usual = name in COMPARED and manoeuvres[name].description == MANOEUVRES[name].description
         return name in DRAWN or not usual
 
     pairs = zip(outcomes[::2], outcomes[1::2], strict=True)

@@ -1,7 +1,7 @@
 """What an analysis leaves: a table on the terminal, margins and sensitivities as CSV, figures."""
 
 from collections.abc import Iterator
-from math import isfinite, isnan
+from math import isfinite
 from pathlib import Path
 from textwrap import fill
 
@@ -14,12 +14,14 @@ from .describing_function import LimitCycle
 from .linear_figures import backlash, bode, plot_nyquist, plot_poles
 from .loop_analysis import SPEEDS, Analysis
 from .margins import Margins
+from .modes import MEANT
 from .sensitivity import SHOWN, plot_sensitivity
 
 
 def announce(found: Analysis) -> None:
     """Prints the margins, and what the describing function says."""
     print_table(plain_table(f"the loop with {found.controller}", margin_headings(), margin_rows(found), labels=2))
+    print(f"drive train: {MEANT}")
     print("limit cycles through the gap, by the describing function:")
     for line in _limit_cycles(found):
         print(fill(line, 78, subsequent_indent="  "))
@@ -65,11 +67,13 @@ def margin_headings() -> list[str]:
 def margin_rows(found: Analysis) -> Iterator[list[str]]:
     """The margins of each plant at each speed."""
     for at in found.at:
-        yield [at.plant, f"{at.speed:g}", *_mode(at.mode), *_cells(at.margins)]
-
-
-def _mode(mode: tuple[float, float]) -> list[str]:
-    return ["-" if isnan(mode[0]) else f"{mode[0]:.1f}", "-" if isnan(mode[0]) else f"{mode[1]:.2f}"]
+        yield [
+            at.plant,
+            f"{at.speed:g}",
+            f"{at.mode.frequency:.2f}",
+            f"{at.mode.damping_ratio:.2f}",
+            *_cells(at.margins),
+        ]
 
 
 def _cells(record: object) -> list[str]:

@@ -1,7 +1,7 @@
 """What comes of the numbers of a car: how its drive train swings, how wide its gap is, what its controller can do."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from itertools import zip_longest
 from math import degrees
 from typing import Any, NamedTuple
 
@@ -9,16 +9,16 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from ....fmus.building.car_entries import Entry, car
-from ....fmus.building.oscillation import SPEED, oscillation
-from ....fmus.catalogue import EVERY
+from ....fmus.building.estimates import DECIDE
+from ....fmus.building.one_car import MEASURED
 from ....models.damping_controller import BLOCK
 from ...design.design_trials import loop_parameters
+from ...design.unknowns import COSTS, Unknown
 from ...loop.places import PLANTS
 from ...views.terminal import plain_table, print_table
 from .linear_loop import linear_loop
 from .loop_analysis import point_of
-from .modes import Mode, is_stable, modes
-from .operating_point import Point
+from .modes import MEANT, Mode, alone, drive_train_mode, is_stable
 
 SHORT = {
     "TwoMassDriveline": "design plant",
@@ -29,8 +29,8 @@ SHORT = {
 }
 """What stands in the table for the name of an FMU."""
 
-ABOUT = (0.5, 2.0)
-"""Frequencies of a damped drive train, over the one without damping, between which its mode is looked for."""
+SHEET = ("m", "r", "i", "T_max")
+"""What a data sheet has of a car."""
 
 
 class PlantProperties(NamedTuple):
@@ -77,7 +77,7 @@ def car_properties(entries: Mapping[str, Any], gains: Mapping[str, Any] | None) 
     controller = BLOCK.Parameters(**limits)
     wheel_torque = full["T_max"] * full["i"]
     return CarProperties(
-        plants=tuple(_of_plant(plant, entries, gains) for plant in PLANTS),
+        plants=tuple(swing(plant, entries, gains) for plant in PLANTS),
         gap=degrees(2.0 * full["phi_B"] / full["i"]),
         wheel_torque=wheel_torque,
         acceleration=wheel_torque / full["r"] / full["m"],
@@ -87,39 +87,39 @@ def car_properties(entries: Mapping[str, Any], gains: Mapping[str, Any] | None) 
     )
 
 
-def _of_plant(plant: str, entries: Mapping[str, Any], gains: Mapping[str, Any] | None) -> PlantProperties:
-    block: Any = EVERY[plant].block
-    point = replace(point_of(plant, BLOCK.name, loop_parameters({**entries, **(gains or {})}, plant)), v=SPEED)
-    alone = oscillation(block, point.of("plant", block))
-    return PlantProperties(plant, *alone, _damped(point, alone.frequency) if gains else None)
+def swing(plant: str, entries: Mapping[str, Any], gains: Mapping[str, Any] | None) -> PlantProperties:
+    """The drive train of a car in a plant without control, and with that of some gains; as of `car_properties`."""
+    point = point_of(plant, BLOCK.name, loop_parameters({**entries, **(gains or {})}, plant))
+    usual, loop = alone(point), linear_loop(point) if gains else None
+    damped = drive_train_mode(loop, usual.frequency) if loop and is_stable(loop) else None
+    return PlantProperties(plant, *usual, damped)
 
 
-def _damped(point: Point, alone: float) -> Mode | None:
-    """The drive train with control, which swings at about the frequency (Hz) that it has alone; without a mode there it
-    does not swing."""
-    loop = linear_loop(point)
-    if not is_stable(loop):
-        return None
-    low, high = (factor * alone for factor in ABOUT)
-    about = [mode for mode in modes(loop.mean) if low < mode.frequency < high]
-    return min(about, key=lambda mode: mode.damping_ratio, default=Mode(alone, 1.0))
-
-
-def announce(entries: Iterable[Entry], found: CarProperties, title: str, gains: str) -> None:
-    """Prints the entries of a car, and what comes of them with gains of some origin."""
-    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=0)
-    for heading in ("entry", "value", "unit", "from", "taken by", "meaning"):
-        table.add_column(heading, justify="right" if heading == "value" else "left", no_wrap=heading != "meaning")
-    before = None
-    for entry in entries:
-        if before not in (None, entry.origin):
-            table.add_section()
-        before = entry.origin
-        origin = f"{entry.origin} ({entry.source})" if entry.source else entry.origin
-        value = str(entry.value).lower() if isinstance(entry.value, bool) else f"{entry.value:.6g}"
-        blocks = ", ".join(SHORT.get(name, name) for name in entry.blocks)
-        table.add_row(entry.name, value, entry.unit, origin, blocks, entry.meaning)
+def announce(
+    entries: Sequence[Entry], found: CarProperties, unknown: Sequence[Unknown], title: str, gains: str, every: bool
+) -> None:
+    """Prints the entries of a car, all or those that decide, and what comes of them with gains of some origin."""
+    worth = {each.entry.name: each.cells for each in unknown}
+    shown = [each for each in entries if every or each.name in {*MEASURED, *SHEET, *DECIDE}]
+    headings = ["entry", "value", "unit", "from", "taken by" if every else "ms", "meaning" if every else "%"]
+    if not every:
+        headings.insert(4, "meaning")
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for heading in headings:
+        table.add_column(
+            heading, justify="right" if heading in ("value", "ms", "%") else "left", no_wrap=heading != "meaning"
+        )
+    for each, after in zip_longest(shown, shown[1:]):
+        origin = f"{each.origin} ({each.source})" if each.source else each.origin
+        value = str(each.value).lower() if isinstance(each.value, bool) else f"{each.value:.6g}"
+        blocks = ", ".join(SHORT.get(name, name) for name in each.blocks)
+        rest = (blocks, each.meaning) if every else (each.meaning, *worth.get(each.name, ("", "")))
+        table.add_row(
+            each.name, value, each.unit, origin, *rest, end_section=bool(after and after.origin != each.origin)
+        )
     print_table(table)
+    if not every:
+        print(*([f"ms, %: {COSTS}"] if unknown else []), f"{len(entries) - len(shown)} other entries: --all", sep="\n")
 
     headings = ["drive train at 15 km/h", "frequency\nHz", "damping\nratio", "with control\nHz", "damping\nratio"]
     rows = []
@@ -128,6 +128,7 @@ def announce(entries: Iterable[Entry], found: CarProperties, title: str, gains: 
         rows.append([plant.plant, f"{plant.frequency:.2f}", f"{plant.damping_ratio:.3f}", *damped])
     print_table(plain_table(f"control: {gains}; - where there is none, or the loop is not stable", headings, rows))
     print(
+        f"with control: {MEANT}\n"
         f"backlash at the wheel: {found.gap:.2f} degrees from flank to flank\n"
         f"authority: the control takes up to {found.taken:g} N.m from the demand and adds up to {found.added:g} N.m, "
         f"of T_max = {found.T_max:g} N.m\n"

@@ -10,6 +10,7 @@ from ...base.errors import DrivelineError
 from ...cosimulation.parameter_changes import require_constant
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import MANOEUVRES
+from ...manoeuvres.for_car import for_car
 from ...metrics.estimate import EstimateMetrics, estimate_metrics
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
@@ -19,7 +20,7 @@ from . import sensitivity
 from .describing_function import LimitCycle, Swing, limit_cycles, swings
 from .linear_loop import LinearLoop, linear_loop
 from .margins import Margins, margins
-from .modes import Mode, drive_train_mode, is_stable
+from .modes import Mode, alone, drive_train_mode, is_stable
 from .operating_point import Point
 from .parameter_sweeps import SWEEPS, Swept, swept
 
@@ -148,13 +149,13 @@ def linear_part(part: Part, controller: str, parameters: Mapping[str, Mapping[st
         raise DrivelineError(
             f"the loop with {controller} is not stable in contact at {speed:g} km/h: it has no margins"
         )
-    return At(part.plant, speed, loop, drive_train_mode(loop.mean), margins(loop))
+    return At(part.plant, speed, loop, drive_train_mode(loop, alone(point).frequency), margins(loop))
 
 
 def run_of(run: Run, settings: Mapping[str, Settings]) -> tuple[Metrics, EstimateMetrics]:
     """What a run of the loop is worth; settings by plant."""
     changed = {} if run.parameter is None else {run.parameter: run.value}
-    manoeuvre = MANOEUVRES[run.manoeuvre]
+    manoeuvre = for_car(MANOEUVRES[run.manoeuvre], settings[run.plant].parameters)
     results = simulate(manoeuvre, settings[run.plant].with_parameters(changed))
     return evaluate(results, manoeuvre), estimate_metrics(results)
 

@@ -1,14 +1,13 @@
 """The poles of a sampled system as modes, and those of a drive train without and with damping."""
 
-from collections.abc import Mapping
-from dataclasses import replace
-from math import nan, pi
-from typing import Any, NamedTuple
+from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
+from ....fmus.building.oscillation import oscillation
 from ....models.controller import T_S
-from .linear_loop import LinearLoop, linear_loop
+from .linear_loop import LinearLoop
 from .operating_point import Point
 
 
@@ -19,8 +18,11 @@ class Mode(NamedTuple):
     damping_ratio: float
 
 
-DRIVE_TRAIN = (2.0, 16.0)
-"""In Hz; below are the pitching of the body and the speed of the car, above mounts and bushings."""
+ABOUT = (0.5, 2.0)
+"""Frequencies of the drive train in a loop, over the one that it has alone, between which its mode is looked for."""
+
+MEANT = "teeth in contact, the least damped mode between half and twice the frequency without control"
+"""What a drive train with control is given as."""
 
 
 def is_stable(loop: LinearLoop) -> bool:
@@ -28,11 +30,18 @@ def is_stable(loop: LinearLoop) -> bool:
     return bool(np.abs(np.linalg.eigvals(loop.closed())).max() < 1.0)
 
 
-def drive_train_mode(loop: LinearLoop) -> Mode:
-    """The least damped mode of DRIVE_TRAIN; without one, NaN Hz and a damping ratio of 1."""
-    low, high = DRIVE_TRAIN
-    own = (mode for mode in modes(loop) if low < mode.frequency < high)
-    return min(own, key=lambda mode: mode.damping_ratio, default=Mode(nan, 1.0))
+def alone(point: Point) -> Mode:
+    """The drive train of a plant without control: the mode in which a torque of the motor shows most in its speed,
+    in contact, rolling at 15 km/h."""
+    return Mode(*oscillation(point.plant, point.of("plant", point.plant)))
+
+
+def drive_train_mode(loop: LinearLoop, frequency: float) -> Mode:
+    """The drive train in a loop (MEANT), with the mean of samples without and with a message; without a mode about the
+    frequency (Hz) that it has alone it does not swing."""
+    low, high = (factor * frequency for factor in ABOUT)
+    about = (mode for mode in modes(loop.mean) if low < mode.frequency < high)
+    return min(about, key=lambda mode: mode.damping_ratio, default=Mode(frequency, 1.0))
 
 
 def modes(loop: LinearLoop, gain: float = 1.0) -> list[Mode]:
@@ -47,28 +56,3 @@ def swinging_poles(loop: LinearLoop, gain: float = 1.0) -> np.ndarray:
     """The poles of the closed loop that swing, in 1/s, as of `modes`."""
     poles = np.linalg.eigvals(loop.closed(gain))
     return np.log(poles[(poles.imag > 0.0) & (np.abs(poles) > 1e-6)]) / (loop.cycle * T_S)
-
-
-def swing(plant: Any, motor: Any, gains: Mapping[str, float]) -> tuple[Mode, Mode]:
-    """The drive train without and with damping: its own mode, and the least damped one below twice its frequency.
-
-    Vehicle and wheels move as one here, without the damping by the tyre; the wheel speed is not used.
-
-    Args:
-        plant, motor: parameters of the design model and of the motor.
-        gains: parameters of the controller, beside those of the plant.
-    """
-    loop = rigid(plant, motor, gains)
-    alone = min(modes(loop, gain=0.0), key=lambda mode: abs(mode.damping_ratio))
-    slow = (mode for mode in modes(loop) if mode.frequency < 2.0 * alone.frequency)
-    return alone, min(slow, key=lambda mode: mode.damping_ratio)
-
-
-def rigid(plant: Any, motor: Any, gains: Mapping[str, float]) -> LinearLoop:
-    """The loop in which the wheels carry the vehicle; arguments as of `swing`."""
-    car = plant._replace(J_2=plant.J_2 + plant.m * plant.r**2 / plant.i**2, recorded_load=True)
-    known = {name: getattr(plant, name) for name in ("J_1", "J_2", "C", "phi_B")}
-    limits = {"T_max": motor.T_max, "tau": motor.tau}
-    point = Point(T=0.2 * motor.T_max, wheel=False)
-    given = {"plant": car._asdict(), "motor": motor._asdict(), "controller": known | limits | dict(gains)}
-    return linear_loop(replace(point, parameters=given))

@@ -8,7 +8,7 @@ import numpy as np
 
 from .linear_loop import linear_loop
 from .margins import Margins, margins
-from .modes import Mode, drive_train_mode, is_stable, swinging_poles
+from .modes import Mode, alone, drive_train_mode, is_stable, swinging_poles
 from .operating_point import Point
 
 
@@ -75,5 +75,7 @@ class Swept(NamedTuple):
 def swept(point: Point, sweep: Sweep) -> Iterator[Swept]:
     """The loop of a point with every value of a sweep, with the mean of its samples."""
     for value in sweep.values:
-        loop = linear_loop(sweep.point(point, value)).mean
-        yield Swept(value, swinging_poles(loop), drive_train_mode(loop), margins(loop) if is_stable(loop) else None)
+        there = sweep.point(point, value)
+        loop = linear_loop(there).mean
+        mode = drive_train_mode(loop, alone(there).frequency)
+        yield Swept(value, swinging_poles(loop), mode, margins(loop) if is_stable(loop) else None)

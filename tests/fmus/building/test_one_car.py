@@ -175,6 +175,9 @@ def test_a_car_by_its_data_sheet_is_estimated_through_the_default_car() -> None:
     assert {name: found[name] / DEFAULT_CAR[name] for name in expected} == pytest.approx(expected, rel=1e-5)
     assert followed(T_max=180.0, r=0.29, i=9.0, m=1450.0) == {}
     assert followed(F_z0=4250.0)["c_slip"] == followed(F_z0=4250.0, m=2900.0)["c_slip"] == 70000.0, "the load decides"
+    truck = followed(m=40000.0)
+    assert (truck["F_z0"], truck["c_slip"]) == pytest.approx((11500 * 9.81, 11500 * 9.81 / 8500 * 140000), rel=1e-5)
+    assert "F_z0" not in of_one_car({"m": 19200.0}, ())
     assert of_one_car({"T_max": 1.0}, ())["J_1"] == 0.001, "no less than a block takes"
     assert refusal(T_max=1.0).endswith("; not given: J_1, C")
     assert "C" not in followed(T_max=360.0, k_s=25800.0, k_g=120000.0, k_p=70000.0, J_1=0.055), "which has its shafts"

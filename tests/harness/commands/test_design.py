@@ -11,6 +11,7 @@ from driveline.fmus.building.car_entries import template
 from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
 from driveline.harness.commands.cli import main
 from driveline.harness.design.design import design
+from driveline.harness.design.unknowns import not_given
 from tests import ROOT
 from tests.harness.commands import Capsys
 
@@ -21,9 +22,11 @@ OF_VAN = ["design", "--vehicle", str(VAN)]
 def test_the_gains_of_a_car_are_printed_with_units_and_meaning_or_written(tmp_path: Path, capsys: Capsys) -> None:
     assert main(OF_VAN) == 0
     text, path = capsys.readouterr().out, tmp_path / "new" / "gains.toml"
-    first, second, *lines = text.splitlines()
+    first, second, third, *lines = text.splitlines()
     assert first.startswith("# Gains of the DampingController for van.toml, by `driveline design` (driveline-damping")
-    assert second == "# Drive train: 6.97 Hz; damped: 8.15 Hz, damping ratio 0.60."
+    assert second == "# Drive train of the design model at 15 km/h: 6.95 Hz, damping ratio 0.025."
+    assert third.startswith("# With control: ")
+    assert lines[0].startswith("# (teeth in contact, the least damped mode")
     assert tomllib.loads(text) == pytest.approx(design(read_vehicle(VAN)), rel=1e-5)
     assert any(line.endswith("# N.m.s/rad, damping over the speed difference") for line in lines)
     assert main([*OF_VAN, "--output", str(path)]) == 0
@@ -70,7 +73,7 @@ def test_nothing_depends_on_the_working_directory(tmp_path, monkeypatch, capsys)
     [
         ("J1 = 0.09\n", "line 1: J1 is not known"),
         ("T_cyc = 0.2\n", "T_age would be 0.113; the controller takes"),
-        ("tau = 0.06\n", "the motor is too slow for this car (tau = 0.06 s, drive train 7.46 Hz): the damping ratio"),
+        ("tau = 0.06\n", "the motor is too slow for this car (tau = 0.06 s, drive train 7.43 Hz): the "),
     ],
 )
 def test_a_car_without_a_controller_is_answered_with_exit_code_2(tmp_path, capsys, text, message) -> None:
@@ -155,16 +158,47 @@ def test_the_c_of_another_controller_stays_unless_it_is_to_be_replaced(tmp_path:
 
 
 def test_the_table_has_each_entry_and_what_comes_of_them(capsys: Capsys) -> None:
-    assert main(["car", str(VAN)]) == 0
+    assert main(["car", str(VAN), "--all"]) == 0
     text = capsys.readouterr().out
     rows = {line.split()[0]: line for line in text.splitlines() if line.strip()}
-    assert "150 N.m/rad   set" in rows["C"]
-    assert "52333.7 N.m/rad   follows (C)" in rows["k_s"]
+    assert rows["C"].split()[1:4] == ["150", "N.m/rad", "set"]
+    assert rows["k_s"].split()[1:5] == ["52333.7", "N.m/rad", "follows", "(C)"]
     assert "design plant, vehicle, bus" in rows["i"]
     assert "backlash at the wheel: 3.00 degrees" in text
     assert "takes up to 188.378 N.m from the demand and adds up to 83.3333 N.m, of T_max = 250 N.m" in text
     assert rows["TwoMassDriveline"].split()[1] == "6.95"
     assert rows["ValidationVehicle"].split()[1] == "7.50"
+
+
+@pytest.mark.slow
+def test_what_a_data_sheet_lacks_is_said_with_what_it_costs(tmp_path: Path, capsys: Capsys) -> None:
+    """By runs; a car that is told costs nothing, and what is told is not named."""
+    sheet = tmp_path / "sheet.toml"
+    sheet.write_text('m = "1815 kg"\nT_max = 310\ni = 11.53\nr = "34 cm"\nJ_1 = 0.11\n', encoding="utf-8")
+    assert main(["car", str(sheet)]) == 0
+    screen = capsys.readouterr().out.splitlines()
+    assert len(screen) < 40
+    rows = {line.split()[0]: line.split() for line in screen if line.strip()}
+    assert rows["J_1"][1:4] == ["0.11", "kg.m2", "set"]
+    settling, overshoot = map(int, rows["C"][-2:])
+    assert 50 < settling < 500
+    assert 5 < overshoot < 50
+    assert main(["design", "--vehicle", str(sheet), "--output", str(tmp_path / "gains.toml")]) == 0
+    line = capsys.readouterr().out.splitlines()[-1]
+    assert line.startswith("not in sheet.toml, and what half or twice of it costs in settling and overshoot (tipin15, ")
+    assert f"C = 158 N.m/rad (estimated) {settling} ms, {overshoot} %" in line
+    assert [part.split()[0] for part in line.partition("): ")[2].split("; ")][:2] == ["C", "phi_B"]
+    assert "J_1" not in line
+
+
+def test_a_car_that_tells_what_decides_lacks_nothing() -> None:
+    told = {"J_1": 0.06, "J_2": 0.3, "frequency": 7.0, "gap": 0.03, "c_slip": 1e5, "tau": 0.003}
+    assert not_given(told) == []
+    left_out = {name: {**told} for name in told}
+    for name, others in left_out.items():
+        del others[name]
+        (lacking,) = not_given(others)
+        assert lacking.name == {"frequency": "C", "gap": "phi_B"}.get(name, name)
 
 
 def test_tools_get_one_document(tmp_path: Path, capsys: Capsys) -> None:

@@ -18,9 +18,9 @@ from driveline.harness.design.kalman import (
     speed_noise,
     transition,
 )
-from driveline.harness.studies.margins.modes import swing
 from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK
+from tests.harness.studies.margins.contact import swing
 
 STORED_DIGITS = 1e-5
 """Six digits are stored."""

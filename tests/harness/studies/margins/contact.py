@@ -1,11 +1,15 @@
 """The true loop, in contact and without noise: the models themselves, stepped, after a small step of the demand."""
 
 from collections import deque
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from driveline.harness.studies.margins.linear_loop import LinearLoop, linear_loop
 from driveline.harness.studies.margins.linear_plant import NOISELESS, motor_and_plant
+from driveline.harness.studies.margins.modes import Mode, modes
 from driveline.harness.studies.margins.operating_point import CAN, MOTOR, Point
 from driveline.models.block.runner import runner
 
@@ -62,3 +66,28 @@ def growth(point: Point, frequency: float, gain: float = 1.0) -> float:
     wave = np.hanning(length) * np.exp(-2j * np.pi * frequency * t)
     first, second = (abs(np.dot(wave, part - np.mean(part))) for part in (swinging[:length], swinging[length:]))
     return float(second / first)
+
+
+def swing(plant: Any, motor: Any, gains: Mapping[str, float]) -> tuple[Mode, Mode]:
+    """The drive train without and with damping: its own mode, and the least damped one below twice its frequency.
+
+    Vehicle and wheels move as one here, without the damping by the tyre; the wheel speed is not used.
+
+    Args:
+        plant, motor: parameters of the design model and of the motor.
+        gains: parameters of the controller, beside those of the plant.
+    """
+    loop = rigid(plant, motor, gains)
+    alone = min(modes(loop, gain=0.0), key=lambda mode: abs(mode.damping_ratio))
+    slow = (mode for mode in modes(loop) if mode.frequency < 2.0 * alone.frequency)
+    return alone, min(slow, key=lambda mode: mode.damping_ratio)
+
+
+def rigid(plant: Any, motor: Any, gains: Mapping[str, float]) -> LinearLoop:
+    """The loop in which the wheels carry the vehicle; arguments as of `swing`."""
+    car = plant._replace(J_2=plant.J_2 + plant.m * plant.r**2 / plant.i**2, recorded_load=True)
+    known = {name: getattr(plant, name) for name in ("J_1", "J_2", "C", "phi_B")}
+    limits = {"T_max": motor.T_max, "tau": motor.tau}
+    point = Point(T=0.2 * motor.T_max, wheel=False)
+    given = {"plant": car._asdict(), "motor": motor._asdict(), "controller": known | limits | dict(gains)}
+    return linear_loop(replace(point, parameters=given))

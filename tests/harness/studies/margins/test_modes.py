@@ -8,9 +8,10 @@ import pytest
 from driveline.harness.design.design import design, gains_of
 from driveline.harness.design.design_weights import MOTOR, PLANT, records
 from driveline.harness.studies.margins.linear_loop import linear_loop
-from driveline.harness.studies.margins.modes import modes, rigid, swing
+from driveline.harness.studies.margins.modes import modes
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
+from tests.harness.studies.margins.contact import rigid, swing
 
 SECOND_CAR = {"J_1": 0.09, "J_2": 0.45, "C": 210.0, "phi_B": 0.06, "i": 10.5, "m": 2200.0, "r": 0.34}
 

@@ -1,0 +1,92 @@
+"""What a vehicle file does not have of what decides how good the damping is, and what each is worth: how much worse a
+car is damped that has half or twice of it, by a controller that does not know, than by one that does."""
+
+from collections.abc import Mapping, Sequence
+from math import inf, isnan
+from typing import Any, NamedTuple
+
+from ...fmus.building.car_entries import Entry, car_entries
+from ...fmus.building.estimates import DECIDE
+from ...fmus.building.one_car import INSTEAD, SHAFTS, with_estimates
+from ..loop.places import PLANTS
+from ..loop.settings import Settings
+from .design import design
+from .kalman import DesignError
+from .redesign import worth
+
+OFF = (0.5, 2.0)
+"""What a car may have of it, over what the vehicle file makes of it: scaling laws are off by so much."""
+
+MANOEUVRE, PLANT = "tipin15", PLANTS[0]
+"""In which it is measured."""
+
+
+COSTS = f"what half or twice of it costs in settling and overshoot ({MANOEUVRE}, {PLANT})"
+"""What the numbers are."""
+
+
+class Unknown(NamedTuple):
+    """
+    Attributes:
+        entry: with its value, and whether it is estimated or that of the default car.
+        settling: by so many s the car may settle later; infinite: it does not settle.
+        overshoot: by so much more (1) it may swing over.
+    """
+
+    entry: Entry
+    settling: float
+    overshoot: float
+
+    @property
+    def cells(self) -> tuple[str, str]:
+        """Both, in ms and %."""
+        time = "never" if self.settling == inf else f"{1e3 * self.settling:.0f}"
+        return time, f"{100.0 * self.overshoot:.0f}"
+
+
+def not_given(entries: Mapping[str, Any]) -> list[Entry]:
+    """What of DECIDE no entry of a vehicle file tells."""
+    told = {name for by, names in INSTEAD.items() if by in entries for name in names}
+    told |= {"C"} if any(name in entries for name in SHAFTS) else set()
+    return [each for each in car_entries(entries) if each.name in {*DECIDE} - told - entries.keys()]
+
+
+def unknowns(entries: Mapping[str, Any], settings: Settings | None = None) -> list[Unknown]:
+    """What of DECIDE a vehicle file does not have, with what each is worth; most of it first.
+
+    Args:
+        settings: of the runs beside plant and parameters.
+
+    Raises:
+        DesignError: there is no controller for this car.
+    """
+    car = with_estimates(entries)
+    assumed = {**car, **design(car)}
+    found = [Unknown(each, *_worth(car, each, assumed, settings)) for each in not_given(entries)]
+    return sorted(found, key=lambda each: (each.settling, each.overshoot), reverse=True)
+
+
+def _worth(
+    car: Mapping[str, Any], entry: Entry, assumed: Mapping[str, Any], settings: Settings | None
+) -> tuple[float, float]:
+    """Settling time in s and overshoot (1) that are lost at most."""
+    lost = (0.0, 0.0)
+    for factor in OFF:
+        true = {**car, entry.name: factor * entry.value}
+        try:
+            known = {**true, **design(true)}
+        except DesignError:  # such a car has no controller at all
+            continue
+        (late, over), (soon, little) = (worth(PLANT, MANOEUVRE, true, of, settings) for of in (assumed, known))
+        later = inf if isnan(late) else late - soon
+        lost = max(lost[0], later), max(lost[1], over - little)
+    return lost
+
+
+def told(found: Sequence[Unknown], name: str) -> str:
+    """What a vehicle file of some name does not have, and what it is worth, in one line; "" where it has all."""
+    each = (
+        f"{of.entry.name} = {of.entry.value:.3g} {of.entry.unit} ({of.entry.origin}) {of.cells[0]} ms, {of.cells[1]} %"
+        for of in found
+    )
+    return f"not in {name}, and {COSTS}: {'; '.join(each)}" if found else ""
