@@ -46,17 +46,13 @@ def __getattr__(name: str) -> object:
     with _IMPORTING:
         find, names, _ = _lazy()
         if name not in names():
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_nearest(name)}")
+            from .fmus.names import meant
+
+            near = meant(name, names())
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{near and '; ' + near}")
         if name in _MODULES:
             import_module(f".{_MODULES[name]}.{name}", __name__)
         return find(name)
-
-
-def _nearest(name: str) -> str:
-    from difflib import get_close_matches
-
-    near = get_close_matches(name, __dir__(), n=2)
-    return f"; did you mean {' or '.join(near)}?" if near else ""
 
 
 def __dir__() -> list[str]:

@@ -25,7 +25,9 @@ class Symbol:
     __slots__ = ()
 
     def __bool__(self) -> bool:
-        raise TypeError("a model function branches on data; it must call `where` of models.block.operators")
+        raise TypeError(
+            "what it chooses by is known in a run alone; `where` of driveline.operators takes such a condition"
+        )
 
     __add__, __radd__ = _operators("ADD")
     __sub__, __rsub__ = _operators("SUB")

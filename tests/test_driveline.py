@@ -57,6 +57,12 @@ def test_a_name_is_what_its_module_has_and_dir_gives_them() -> None:
         driveline.zzz  # type: ignore[attr-defined]  # noqa: B018
 
 
+def test_a_manoeuvre_that_is_not_known_names_what_is_near() -> None:
+    with pytest.raises(KeyError, match=r"^tipin_15 is not known; did you mean tipin15 or"):
+        driveline.MANOEUVRES["tipin_15"]
+    assert driveline.MANOEUVRES.get("tipin_15") is None
+
+
 def docstring(name: str) -> str:
     """Of a name; what is neither a class, a function nor a module has it below its declaration."""
     found = getattr(driveline, name)

@@ -12,8 +12,9 @@ from driveline.harness.loop.settings import settings
 from driveline.harness.manoeuvres.road_load import Track
 from driveline.harness.metrics.run_metrics import RideMetrics
 from driveline.harness.recordings.drive import read_drive
-from driveline.harness.studies.drives.replay import UNDAMPED, car_of, replay
+from driveline.harness.studies.drives.replay import car_of, replay
 from driveline.harness.views.metrics_table import RIDES_SHOWN
+from driveline.harness.views.signal_lines import WITHOUT
 
 from .data_file import ROOT
 from .study import Cell, Column, Measured, Study, Table, cell
@@ -41,7 +42,7 @@ def rides_table(path: Path, plant: str, controllers: Sequence[str] = CONTROLLERS
     load, T_max = car_of(loops[0])
     rides = replay(Track.of(read_drive(path), T_max), load, dict(zip(controllers, loops, strict=True)))
     found = {ride.controller: ride.metrics for ride in rides}
-    rows = {name: _cells(metrics, found[UNDAMPED]) for name, metrics in found.items()}
+    rows = {name: _cells(metrics, found[WITHOUT]) for name, metrics in found.items()}
     return Table(f"{path.stem} on {plant}", COLUMNS, rows)
 
 
@@ -66,6 +67,6 @@ STUDY = Study(
     "recorded drives with every controller",
     measure,
     again,
-    {SENTINEL: [UNDAMPED, CONTROLLERS[0]]},
+    {SENTINEL: [WITHOUT, CONTROLLERS[0]]},
     seconds=300,
 )

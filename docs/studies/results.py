@@ -13,11 +13,13 @@ from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.drive_figure import drive_drawing
 from driveline.harness.views.markdown import markdown_table
 from driveline.harness.views.metrics_table import SHOWN
+from driveline.harness.views.signal_lines import WITHOUT
 
 from .study import Cell, Column, Measured, Study, Table, cell, number
 
 COLUMNS = tuple(Column(of.plain_heading, of.unit if of.unit != "1" else "", of.decimals) for _, of in SHOWN)
 DRAWN = "drive"
+DAMPINGS = {WITHOUT: False, "with damping": True}
 
 
 class Run(NamedTuple):
@@ -49,7 +51,7 @@ def _table(runs: Iterable[Run]) -> Table:
 
 def measure() -> Measured:
     manoeuvre = MANOEUVRES[DRAWN]
-    both = [at_samples(simulate(manoeuvre, control=control)) for control in (False, True)]
+    both = {name: at_samples(simulate(manoeuvre, control=control)) for name, control in DAMPINGS.items()}
     figure = drive_drawing(both, manoeuvre, PLANTS[0])
     return Measured({"runs": _table(map(Run._make, product(PLANTS, COMPARED, (False, True))))}, {DRAWN: figure})
 

@@ -13,10 +13,11 @@ from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.run_figure import run_drawing
+from driveline.harness.views.signal_lines import WITHOUT
 from driveline.harness.views.step_figure import step_drawing
 
 from .data_file import ROOT
-from .results import COLUMNS, metrics_cells
+from .results import COLUMNS, DAMPINGS, metrics_cells
 from .study import Measured, Study, Table
 
 TIPIN = MANOEUVRES["tipin15"]
@@ -55,12 +56,12 @@ def rows() -> dict[str, tuple[Mapping[str, Any], bool]]:
 
 
 def measure() -> Measured:
-    damped, undamped = (at_samples(simulate(TIPIN, control=control)) for control in (True, False))
-    van = [at_samples(_run((cars()["van, own gains"], control))) for control in (False, True)]
+    both = {name: at_samples(simulate(TIPIN, control=control)) for name, control in DAMPINGS.items()}
+    van = {name: at_samples(_run((cars()["van, own gains"], control))) for name, control in DAMPINGS.items()}
     title = f"{PLANTS[0]}, {TIPIN.description}, damping off"
     figures = {
-        "oscillation": run_drawing(undamped, TIPIN, title, FigureOptions(window=(0.8, 3.0))),
-        "damped": step_drawing((undamped, damped), TIPIN, PLANTS[0]),
+        "oscillation": run_drawing(both[WITHOUT], TIPIN, title, FigureOptions(window=(0.8, 3.0))),
+        "damped": step_drawing(both, TIPIN, PLANTS[0]),
         "van": step_drawing(van, TIPIN, f"{PLANTS[0]}, van"),
     }
     return Measured({"tipin15": _table(rows())}, figures)

@@ -4,7 +4,6 @@ import logging
 import os
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from difflib import get_close_matches
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,9 @@ from typing import Any
 from ..description.variables import interface
 from ..errors import BuildError
 from ..fmu import Fmu
+from ..names import meant
 from ..origin import is_as_made_now, is_stale, origin_of
+from .operator_meant import operator_meant
 from .own_file import fmu_in, place
 
 BUILDS = ("python", "native", "both")
@@ -187,9 +188,7 @@ def _named(name: str) -> Fmu:
         return fmu_in(Path(name))
     if name.endswith(".toml"):
         raise BuildError(f"{name} is no FMU; a car is given as --vehicle {name}, its gains as --parameters")
-    near = get_close_matches(name, EVERY, n=2, cutoff=0.5)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(EVERY)}"
-    raise BuildError(f"unknown FMU {name}; {hint}")
+    raise BuildError(f"unknown FMU {name}; {meant(name, EVERY) or 'there are ' + ', '.join(EVERY)}")
 
 
 def builders(builds: str | None, platform: str = "host", fmi: int = 2) -> list[Builder]:
@@ -285,6 +284,7 @@ def _guarded(builder: Builder, files: Sequence[Path]) -> Builder:
             raise
         except Exception as error:
             where = f"{place(error, files)}: " if files else ""
-            raise BuildError(f"{where}{fmu.name} cannot be built: {type(error).__name__}: {error}") from error
+            why = operator_meant(error) or f"{type(error).__name__}: {error}"
+            raise BuildError(f"{where}{fmu.name} cannot be built: {why}") from error
 
     return build

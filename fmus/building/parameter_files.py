@@ -8,7 +8,6 @@ controller's model of them. What no file names follows (one_car) or keeps its st
 import numbers
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from ..catalogue import EVERY, FMUS
 from ..description.variables import LARGEST, Variable, interface
 from ..errors import ParameterFileError
 from ..fmu import Fmu
-from ..names import RENAMED
+from ..names import RENAMED, meant
 from ..toml_file import toml_entries
 from ..unit_conversion import quantity
 from .one_car import MEASURED, of_one_car
@@ -221,7 +220,7 @@ def _checked(name: str, entry: Any, known: Owners, others: Collection[str], set_
     if name in set_elsewhere:
         raise ParameterFileError(f"{name} does not belong here: {set_elsewhere[name]}")
     if name not in known and name not in others:
-        raise ParameterFileError(f"{shown} is not known{_nearest(name, {*known, *others})}")
+        raise ParameterFileError(f"{shown} is not known{_nearest(name, known, others)}")
     return _value(name, entry, known.get(name, ()))
 
 
@@ -254,11 +253,17 @@ def _quantity(name: str, text: str, unit: str) -> float:
     raise ParameterFileError(f"{name} = {text!r:.40}: it {reason}")
 
 
-def _nearest(name: str, known: Collection[str]) -> str:
-    if RENAMED.get(name) in known:
-        return f"; it is called {RENAMED[name]} now"
-    near = get_close_matches(name, sorted(known), n=3)
-    return f"; did you mean {' or '.join(near)}?" if near else ""
+def _nearest(name: str, known: Owners, others: Collection[str]) -> str:
+    """What a name may have been meant to be: what its words describe, else what is written like it."""
+    words, places = name.lower().split("_"), dict[str, int]()
+    for each, ((_, variable), *_) in known.items():
+        described = variable.declaration.description.replace(",", "").split()
+        found = [[k for k, of in enumerate(described) if of.startswith(word)] for word in words if len(word) > 2]
+        if all(found) and len(found) == len(words):
+            places[each] = min(map(min, found))
+    first = [each for each, at in places.items() if at == min(places.values()) and name not in RENAMED]
+    near = f"did you mean {' or '.join(first[:3])}?" if first else meant(name, sorted({*known, *others}))
+    return f"; {near}" if near else ""
 
 
 def _line(path: Path, name: str) -> int:

@@ -1,11 +1,13 @@
 """Names: what to say of one that is not known, and whether they tell plants apart."""
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from pathlib import Path
+from typing import TypeVar
 
-from ...fmus.names import RENAMED
+from ...fmus.names import meant
 from .errors import DrivelineError
+
+Named = TypeVar("Named")
 
 
 def nearest(name: str, known: Iterable[str], every: str = "known are") -> str:
@@ -17,22 +19,34 @@ def nearest(name: str, known: Iterable[str], every: str = "known are") -> str:
         every: words before all of them.
     """
     names = list(known)
-    if RENAMED.get(name) in names:
-        return f"it is called {RENAMED[name]} now"
-    by_folded = {candidate.casefold(): candidate for candidate in names}
-    close = [by_folded[match] for match in get_close_matches(name.casefold(), by_folded, n=3)]
-    if close:
-        return f"did you mean {' or '.join(close)}?"
-    return f"{every}: {', '.join(names)}"
+    return meant(name, names) or f"{every}: {', '.join(names)}"
 
 
-def require_different(plants: Iterable[str | Path]) -> None:
-    """Refuses plants, by name or file, that tables and files could not tell apart.
+class UnknownName(DrivelineError, KeyError):
+    """Nothing has this name; the message names what is near."""
+
+    __str__ = DrivelineError.__str__
+
+
+class ByName(dict[str, Named]):
+    """What has names; of one that is not known it says what is near.
+
+    Raises:
+        UnknownName: nothing has the name.
+    """
+
+    def __missing__(self, name: str) -> Named:
+        raise UnknownName(f"{name} is not known; {nearest(str(name), self)}")
+
+
+def by_name(blocks: Iterable[str], kind: str) -> dict[str, str]:
+    """Blocks (names or files), each once, by the names that tables and files give them; `kind` says what they are.
 
     Raises:
         DrivelineError: two have the same name.
     """
-    names = [Path(plant).stem for plant in plants]
-    for name in names:
-        if names.count(name) > 1:
-            raise DrivelineError(f"two plants are called {name}; rename the file of one")
+    named: dict[str, str] = {}
+    for block in blocks:
+        if named.setdefault(Path(block).stem, block) != block:
+            raise DrivelineError(f"two {kind}s are called {Path(block).stem}; rename the file of one")
+    return named

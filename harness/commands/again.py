@@ -6,7 +6,7 @@ Figures and pages are not compared. The exit code is 1 if a number is another on
 
 examples:
   driveline again results/compare/compare.json
-  driveline again results/simulate/TwoMassDriveline_tipin15_on.json
+  driveline again results/simulate/TwoMassDriveline_tipin15_DampingController.json
 """
 
 import io

@@ -1,5 +1,5 @@
 """Drives the car with a pseudo-random binary torque demand, on a road on which it about keeps its speed, and writes
-what its sensors record every 2 ms to PLANT_prbs_CONTROL.csv in the output folder.
+what its sensors record every 2 ms to PLANT_prbs_off.csv in the output folder.
 
   motor speed      of the resolver, with its noise and resolution
   motor torque     as motor control estimates it

@@ -7,7 +7,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any
 
-from ..base.known_names import require_different
+from ..base.known_names import by_name
 from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
 from ..views.metrics_table import DAMPINGS
@@ -68,11 +68,9 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
             or the file is for none of them.
     """
     from ..loop.given_parameters import NotTaken
-    from ..studies.drives.replay import by_name
 
-    plants = list(dict.fromkeys(plants or PLANTS))
-    require_different(plants)
-    each = by_name(controllers or PLACES["controller"])
+    plants = list(by_name(plants or PLANTS, "plant").values())
+    each = by_name(controllers or PLACES["controller"], "controller")
     found = {}
     for plant in plants:
         refusals = []
@@ -120,7 +118,8 @@ def _joined(options: Iterable[tuple[str, Any]]) -> str:
     return " ".join(f"--{name} {quote(str(value))}" for name, value in options if value is not None)
 
 
-def dampings(given: Settings) -> str:
-    """Above a table of runs: what its rows are, and with which controller if it is not the usual one."""
-    controller = Path(given.controller).stem
-    return DAMPINGS if controller == PLACES["controller"][0] else f"{DAMPINGS} by {controller}"
+def dampings(controllers: Sequence[str]) -> str:
+    """Above a table of runs: what its rows are, and with which controller if it is one that is not the usual one."""
+    if len(controllers) > 1:
+        return "without damping (off) and with each controller"
+    return DAMPINGS if controllers[0] == PLACES["controller"][0] else f"{DAMPINGS} by {controllers[0]}"

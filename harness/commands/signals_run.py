@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..base.errors import DrivelineError
 from ..base.optional_packages import required
+from ..loop.places import PLACES
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .arguments import option
@@ -41,7 +42,8 @@ class OneRun(Loop, Replacing, SignalsFormat):
 def signals_job(
     args: OneRun, given: Settings, manoeuvre: Manoeuvre, run: Mapping[str, Any], read: Iterable[Path] = ()
 ) -> Iterator[tuple[RunJob, Path]]:
-    """As `harness.commands.jobs.job`, with the path of the files without their endings, PLANT_MANOEUVRE_CONTROL.
+    """As `harness.commands.jobs.job`, with the path of the files without their endings, PLANT_MANOEUVRE_CONTROLLER, or
+    without damping PLANT_MANOEUVRE_off, of a controller that is not the usual one PLANT_MANOEUVRE_CONTROLLER_off.
 
     Args:
         run: what distinguishes it beside settings, manoeuvre and format.
@@ -53,7 +55,8 @@ def signals_job(
 
     if args.frames:
         _require_frames(args, loop(given).own)
-    stem = args.output / f"{given.plant_name}_{manoeuvre.name}_{args.control}"
+    ends = [] if given.controller_name == PLACES["controller"][0] and not given.control else [given.controller_name]
+    stem = args.output / "_".join([given.plant_name, manoeuvre.name, *ends, *([] if given.control else ["off"])])
     same = {**run, "damping": args.control} | distinguishing(given, manoeuvre) | args.other_format
     record, signals = stem.with_name(f"{stem.name}.json"), signals_path(stem, args.format)
     with job(args, record, same, {given.plant_name: given}, [signals], read) as made:

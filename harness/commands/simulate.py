@@ -1,5 +1,5 @@
 """Drives one manoeuvre with the loop of controller, motor, plant and CAN bus, prints the metrics of the run and writes
-every signal, with columns `instance.variable`, to PLANT_MANOEUVRE_CONTROL.csv in the output folder.
+every signal, with columns `instance.variable`, to PLANT_MANOEUVRE_CONTROLLER.csv in the output folder.
 
 An FMU of your own takes the place of controller, motor, plant or can by one word, its path; what it calls otherwise
 than ours, --map renames. A manoeuvre of your own is a TOML file or a table over time (docs/manoeuvres.md).
@@ -54,6 +54,7 @@ def run(args: Arguments) -> int:
     from ..metrics.evaluate import evaluate
     from ..simulation.simulate import simulate
     from ..studies.compare.compare import Case, Outcome
+    from ..views.signal_lines import WITHOUT
     from ..views.signals_file import write_signals
     from ..views.terminal import print_runs
 
@@ -80,8 +81,9 @@ def run(args: Arguments) -> int:
         except ValueError as reason:  # the steps do not fit into the samples of the controller
             made.tell(print, f"no metrics: {reason}", runs=[])
         else:
-            outcome = Outcome(Case(str(given.plant), manoeuvre.name, given.control), metrics, results)
-            made.tell(print_runs, [outcome.row], dampings(given), runs=[outcome.record])
+            controller = given.controller_name if given.control else WITHOUT
+            outcome = Outcome(Case(given.plant_name, manoeuvre.name, controller), metrics, results)
+            made.tell(print_runs, [outcome.row()], dampings([given.controller_name]), runs=[outcome.record])
     return 0
 
 

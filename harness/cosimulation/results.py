@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from ..base.known_names import UnknownName, nearest
 from .row_file import RESIDENT, RowFile
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ class Results(np.ndarray):
         self.file = getattr(source, "file", None)
 
     def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, str) and key not in (names := self.dtype.names or ()):
+            raise UnknownName(f"no column {key}; {nearest(key, names, every='there are')}")
         found = super().__getitem__(key)
         if not isinstance(key, str):
             return found

@@ -20,10 +20,11 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.road_load import Track
 from ..recordings.drive import Drive
 from ..studies.drives.replay import car_of, followed
-from ..views.colours import GREEN, ORANGE, PURPLE, SKY, VERMILION
+from ..views.annotations import shown_at_first
 from ..views.metrics_table import SHOWN
+from ..views.page.compared_runs import PANELS
 from ..views.page.document import document
-from ..views.page.paired_runs import PANELS, shown_at_first
+from ..views.signal_lines import CONTROLLERS
 from .follow import following
 from .knobs import CAR, COMFORT, GAINS, ROAD, SPORT, knobs
 from .module import KINDS, loops_of, named, number
@@ -34,7 +35,7 @@ HERE = Path(__file__).parent / "page"
 WORTH = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms", "impact_speed", "withheld_time")
 """The metrics of a page."""
 
-BESIDE = (VERMILION, GREEN, ORANGE, PURPLE, SKY, "#999933")
+BESIDE = tuple(color for color, *_ in CONTROLLERS[1:])
 """Colours of the other controllers, in turn."""
 
 HELD = ("#8ab6d6", "#c3a5cf", "#d8b365")

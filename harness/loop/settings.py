@@ -115,6 +115,11 @@ class Settings:
         """By which tables and files name the plant."""
         return Path(self.plant).stem
 
+    @property
+    def controller_name(self) -> str:
+        """The same of the controller."""
+        return Path(self.controller).stem
+
     def replace(self, **changes: Unpack[Changes]) -> "Settings":
         """The same with other values of these fields.
 

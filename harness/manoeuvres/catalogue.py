@@ -3,6 +3,7 @@
 from dataclasses import replace
 from math import atan
 
+from ..base.known_names import ByName
 from .demand_shape import plateau_ends
 from .manoeuvre import Manoeuvre
 from .prbs import binary_torque
@@ -179,7 +180,7 @@ EVERYDAY = (
 )
 """The days of an electric car."""
 
-MANOEUVRES: dict[str, Manoeuvre] = {manoeuvre.name: manoeuvre for manoeuvre in (*USUAL_MANOEUVRES, *EVERYDAY)}
+MANOEUVRES: dict[str, Manoeuvre] = ByName((each.name, each) for each in (*USUAL_MANOEUVRES, *EVERYDAY))
 """The manoeuvres of the project, by name."""
 
 COMPARED = tuple(each.name for each in USUAL_MANOEUVRES if each.name not in ("prbs15", "launch_brake", "hill_hold"))

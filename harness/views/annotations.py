@@ -14,6 +14,9 @@ from .metrics_table import SHOWN, number
 from .panels import Arrow, Band, Curve, Part, Spans
 from .signal_lines import interval
 
+BEFORE, AFTER = 0.1, 1.4
+"""What is shown of a step, in s."""
+
 TICK = 3.0
 """Of the band, where it has settled."""
 
@@ -31,6 +34,13 @@ SAID = {
 
 PRINTED = {"N.m": "N·m", "m/s3": "m/s³"}
 """Units as they are printed."""
+
+
+def shown_at_first(manoeuvre: Manoeuvre) -> tuple[float, float]:
+    """From and to when in s: the step, or else the whole manoeuvre."""
+    if manoeuvre.dT is None:
+        return 0.0, manoeuvre.duration
+    return max(manoeuvre.t_0 - BEFORE, 0.0), min(manoeuvre.t_0 + AFTER, manoeuvre.duration)
 
 
 def metrics_of(run: np.ndarray, manoeuvre: Manoeuvre) -> Metrics | None:

@@ -15,16 +15,29 @@ from .markdown import markdown_table
 
 
 class Row(NamedTuple):
-    """One run in the table."""
+    """One run in the table.
+
+    Attributes:
+        damping: "off", or "on", or of several controllers the name of its own.
+    """
 
     plant: str
     manoeuvre: str
-    control: bool
+    damping: str
     metrics: Metrics
+
+    @property
+    def control(self) -> bool:
+        return self.damping != "off"
+
+    @property
+    def run(self) -> str:
+        """What it is a run of, without or with damping."""
+        return f"{self.manoeuvre} on {self.plant}"
 
 
 DAMPINGS = "without (off) and with (on) active damping"
-"""What the two rows of a manoeuvre are."""
+"""What the rows of a manoeuvre are."""
 
 SHOWN = [(metric, metric.column) for metric in declared(Metrics) if metric.column]
 """The metrics that the table has, and how."""
@@ -36,7 +49,7 @@ RIDES_SHOWN = [(metric, metric.column) for metric in declared(RideMetrics) if me
 def cells(row: Row) -> list[str]:
     """What the table says of a run."""
     numbers = (number(metric.of(row.metrics), column) for metric, column in SHOWN)
-    return [row.manoeuvre, "on" if row.control else "off", *numbers]
+    return [row.manoeuvre, row.damping, *numbers]
 
 
 def number(value: float, column: Column) -> str:
@@ -73,7 +86,7 @@ def _named(some: Sequence[Row], rows: Sequence[Row]) -> str:
     names = []
     for row in some:
         whole = all(other in some for other in rows if other.manoeuvre == row.manoeuvre)
-        names.append(row.manoeuvre if whole else f"{row.plant} {row.manoeuvre} {'on' if row.control else 'off'}")
+        names.append(row.manoeuvre if whole else f"{row.plant} {row.manoeuvre} {row.damping}")
     return ", ".join(dict.fromkeys(names))
 
 

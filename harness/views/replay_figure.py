@@ -1,8 +1,7 @@
 """Figure of a recorded drive: the speed against the recorded one, how far the gear torque swings, a close-up for each
 controller; in the units of the recording."""
 
-from collections.abc import Iterable, Mapping
-from itertools import cycle
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,28 +11,13 @@ from ..metrics.oscillation import amplitude
 from ..metrics.spectrum import band_rms
 from ..recordings.file_units import FileUnit
 from .annotations import GAP, gap
-from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from .colours import BLACK, BLUE, GREY
 from .figure_options import PLAIN, FigureOptions
 from .figure_style import plot
-from .panels import DASH_DOT, DASHED, DOTTED, SOLID, Axis, Curve, Dashes, Panel
-from .signal_lines import Line, column, envelope_of, interval
+from .panels import DOTTED, Axis, Curve, Panel
+from .signal_lines import Line, Look, Runs, column, envelope_of, interval, looks_of
 
 SI = {"v": FileUnit("m/s"), "T_mot": FileUnit("N.m")}
-
-How = tuple[str, Dashes, float]
-"""Colour, dashes and width."""
-
-UNDAMPED: How = (ORANGE, SOLID, 1.8)
-OTHERS: tuple[How, ...] = (
-    (BLUE, SOLID, 0.9),
-    (VERMILION, DASHED, 0.9),
-    (BLACK, DASH_DOT, 0.9),
-    (GREEN, DOTTED, 1.2),
-    (PURPLE, (8.0, 2.0), 0.9),
-    (GREY, (2.0, 2.0), 1.2),
-)
-"""The controllers, in turn."""
-
 
 PIECE, PIECES = 6.0, 5
 """Length in s of the roughest pieces, and how many there are."""
@@ -43,7 +27,7 @@ LEAD = 1.0
 
 
 def plot_replay(
-    runs: Mapping[str, np.ndarray],
+    runs: Runs,
     recorded: tuple[np.ndarray, np.ndarray],
     title: str,
     stem: Path,
@@ -79,28 +63,20 @@ def plot_replay(
     return plot([[panel] for panel in panels], Axis("time in s", window), title, stem, options, size=(7.2, 2.3))
 
 
-def looks_of(rides: Iterable[str]) -> dict[str, How]:
-    """How the curves of the rides are drawn, the undamped one first."""
-    undamped, *others = rides
-    return {undamped: UNDAMPED} | dict(zip(others, cycle(OTHERS), strict=False))
-
-
 def speeds(run: np.ndarray, recorded: tuple[np.ndarray, np.ndarray], label: str, v: FileUnit) -> Panel:
     """The speed of a ride against the recorded one."""
     curve = Curve(recorded[0], recorded[1] / v.factor, "recorded", GREY, width=2.5)
     return Panel(f"speed {v}", [curve, *Line(column("plant.v", 1.0 / v.factor), label, BLUE).of(run)])
 
 
-def swings(runs: Mapping[str, np.ndarray], looks: Mapping[str, How], unit: FileUnit) -> Panel:
+def swings(runs: Runs, looks: Mapping[str, Look], unit: FileUnit) -> Panel:
     """The envelope of the gear torque of all rides."""
     signal = envelope_of("plant.T_gear", 1.0 / unit.factor)
     curves = [c for name, run in runs.items() for c in Line(signal, _with_rms(name, run, unit), *looks[name]).of(run)]
     return Panel(f"gear torque, 5-50 Hz\nenvelope {unit}", curves, bounds=(0.0, None), columns=2)
 
 
-def torques(
-    runs: Mapping[str, np.ndarray], looks: Mapping[str, How], unit: FileUnit, closer: tuple[float, float] | None = None
-) -> Panel:
+def torques(runs: Runs, looks: Mapping[str, Look], unit: FileUnit, closer: tuple[float, float] | None = None) -> Panel:
     """The gear torque of rides, with the demand of the last one and, in a close-up, when its teeth are apart."""
     T_gear, T_driver = (column(name, 1.0 / unit.factor) for name in ("plant.T_gear", "controller.T_driver"))
     last = list(runs.values())[-1]

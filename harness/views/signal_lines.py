@@ -3,16 +3,44 @@
 Lines of one panel differ in their dashes or in how light they are, so that they can be told apart in a grey print.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
+from itertools import cycle
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..metrics.band_filter import derivative, envelope
-from .colours import BLACK, BLUE, GREEN, GREY, VERMILION
+from .colours import BLACK, BLUE, GREEN, GREY, OLIVE, ORANGE, PURPLE, SKY, VERMILION
 from .panels import DASH_DOT, DASHED, DOTTED, SOLID, Curve, Dashes, Panel, Part, seen
 
 KMH = 3.6
+
+WITHOUT = "without damping"
+"""The run with which others are compared, as figures and tables name it."""
+
+Runs = Mapping[str, np.ndarray]
+"""Runs by the names of the controllers, the one without damping first."""
+
+Look = tuple[str, Dashes, float]
+"""Colour, dashes and width of the curves of a run, where a figure has those of several."""
+
+UNDAMPED: Look = (GREY, SOLID, 1.8)
+CONTROLLERS: tuple[Look, ...] = (
+    (BLUE, SOLID, 0.9),
+    (VERMILION, DASHED, 0.9),
+    (GREEN, DASH_DOT, 0.9),
+    (ORANGE, DOTTED, 1.2),
+    (PURPLE, (8.0, 2.0), 0.9),
+    (SKY, (2.0, 2.0), 1.2),
+    (OLIVE, DASHED, 1.2),
+)
+"""Those of the controllers, in turn; a page has the same."""
+
+
+def looks_of(runs: Iterable[str]) -> dict[str, Look]:
+    """How the curves of runs are drawn, by their names."""
+    others = [name for name in runs if name != WITHOUT]
+    return {WITHOUT: UNDAMPED} | dict(zip(others, cycle(CONTROLLERS), strict=False))
 
 
 class Signal(NamedTuple):
@@ -103,6 +131,8 @@ class Row(NamedTuple):
 DEMAND = Line(column("controller.T_driver"), r"$T_{driver}$, demand", BLACK, DOTTED, 1.1)
 T_GEAR = Line(column("plant.T_gear"), r"$T_{gear}$", VERMILION, SOLID, 1.6)
 
+T_MOT = Line(column("motor.T_mot"), r"$T_{mot}$, motor", GREY, SOLID, 1.8)
+
 GEAR_TORQUE = Row(
     "gear torque\nin N·m",
     (T_GEAR, Line(column("controller.T_gear_hat"), r"$\hat T_{gear}$, estimate", BLUE, DASHED, 0.9), DEMAND),
@@ -117,7 +147,7 @@ JERK_UP_TO_50_HZ = Row("its jerk up to\n50 Hz in m/s³", (Line(JERK, width=0.8),
 MOTOR_TORQUE = Row(
     "motor torque\nin N·m",
     (
-        Line(column("motor.T_mot"), r"$T_{mot}$, motor", GREY, SOLID, 1.8),
+        T_MOT,
         Line(column("controller.T_ref"), r"$T_{ref}$, to the motor", BLUE, SOLID, 0.9),
         Line(column("controller.T_damp"), r"$T_{damp}$, damping", GREEN, DASH_DOT, 1.0),
         DEMAND,

@@ -1,33 +1,28 @@
-"""Figure of a step: without damping on the left, with damping on the right, on the same axes."""
+"""Figure of a step: without damping on the left, with each controller to the right of it, on the same axes."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .annotations import GAP, gap, in_words, marks_of_step, metrics_of
+from .annotations import GAP, gap, in_words, marks_of_step, metrics_of, shown_at_first
 from .figure_options import PLAIN, FigureOptions
 from .figure_style import draw
 from .panels import Axis, Drawing, Panel
-from .signal_lines import ACCELERATION, GEAR_TORQUE, JERK_UP_TO_50_HZ, MOTOR_TORQUE, SPEED_LABEL, SPEEDS, Row
-
-TITLES = ("without damping", "with damping")
+from .signal_lines import ACCELERATION, GEAR_TORQUE, JERK_UP_TO_50_HZ, MOTOR_TORQUE, SPEED_LABEL, SPEEDS, Row, Runs
 
 TO_THE_MOTOR, BOTH_SPEEDS = Row(MOTOR_TORQUE.label, MOTOR_TORQUE.lines[1:]), Row(SPEED_LABEL, SPEEDS)
 
-AROUND = (-0.1, 1.4)
-"""From and to when in s, after the step, is shown."""
+NARROWEST = 2.6
+"""Of a column, in inches."""
 
 
-def plot_step(
-    runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, stem: Path, options: FigureOptions = PLAIN
-) -> list[Path]:
+def plot_step(runs: Runs, manoeuvre: Manoeuvre, plant: str, stem: Path, options: FigureOptions = PLAIN) -> list[Path]:
     """Writes the figure of `step_drawing`.
 
     Args:
-        runs: results without and with damping.
-        manoeuvre: that both ran, a step.
+        runs: their results.
+        manoeuvre: that all ran, a step.
         plant: its name, for the title.
         stem: path of the files without their ending.
 
@@ -37,14 +32,16 @@ def plot_step(
     return draw(step_drawing(runs, manoeuvre, plant, options), stem, options)
 
 
-def step_drawing(
-    runs: Sequence[np.ndarray], manoeuvre: Manoeuvre, plant: str, options: FigureOptions = PLAIN
-) -> Drawing:
+def step_drawing(runs: Runs, manoeuvre: Manoeuvre, plant: str, options: FigureOptions = PLAIN) -> Drawing:
     """Gear torque with its estimate, band and overshoot, damping torque, speeds, motion of the body."""
-    window = options.window or (manoeuvre.t_0 + AROUND[0], manoeuvre.t_0 + AROUND[1])
-    columns = [_panels(run, manoeuvre, window, title) for run, title in zip(runs, TITLES, strict=True)]
-    rows = list(zip(*columns, strict=True))
-    return Drawing(rows, Axis("time in s", window), f"{plant}, {manoeuvre.description}", (7.2, 1.57))
+    window = options.window or shown_at_first(manoeuvre)
+    rows = list(zip(*(_panels(run, manoeuvre, window, name) for name, run in runs.items()), strict=True))
+    return Drawing(rows, Axis("time in s", window), f"{plant}, {manoeuvre.description}", size_of(runs))
+
+
+def size_of(runs: Runs) -> tuple[float, float]:
+    """Of a figure with a column for each run, and its height of a row, in inches."""
+    return max(7.2, NARROWEST * len(runs)), 1.57
 
 
 def _panels(run: np.ndarray, manoeuvre: Manoeuvre, window: tuple[float, float], heading: str) -> list[Panel]:

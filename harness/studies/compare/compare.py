@@ -1,15 +1,17 @@
-"""The main job: every manoeuvre on every plant, without and with damping, side by side.
+"""The main job: every manoeuvre on every plant, without damping and with each controller, side by side.
 
 The runs know nothing of each other and are spread over the cores; what comes back is in the order
 of the cases, whatever finishes first.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
+from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ...base.known_names import require_different
+from ...base.errors import DrivelineError
+from ...base.known_names import by_name
 from ...base.progress import progress
 from ...cosimulation.results import Results
 from ...loop.settings import Settings
@@ -21,6 +23,7 @@ from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
 from ...views.figure_options import PLAIN, FigureOptions
 from ...views.metrics_table import DAMPINGS, Row, values, write_markdown, write_metrics
+from ...views.signal_lines import WITHOUT
 from ...views.signals_file import write_signals
 
 DRAWN = ("tipin15", "tipin50", "tipout", "launch", "drive")
@@ -31,22 +34,34 @@ Manoeuvres = Mapping[str, Manoeuvre]
 
 
 class Case(NamedTuple):
-    """One run: a plant (name or file of an FMU), a manoeuvre by name, damping on or off."""
+    """One run: a plant (name or file of an FMU), a manoeuvre by name, and a controller (name or file) or WITHOUT."""
 
     plant: str
     manoeuvre: str
-    control: bool
+    controller: str
 
     def __str__(self) -> str:
-        return f"{self.manoeuvre} on {self.plant_name}, damping {'on' if self.control else 'off'}"
+        return f"{self.manoeuvre} on {self.plant_name}, {self.controller_name}"
+
+    @property
+    def control(self) -> bool:
+        return self.controller != WITHOUT
 
     @property
     def plant_name(self) -> str:
         return Path(self.plant).stem
 
     @property
+    def controller_name(self) -> str:
+        return Path(self.controller).stem
+
+    @property
     def file_name(self) -> str:
-        return f"{self.plant_name}_{self.manoeuvre}_{'on' if self.control else 'off'}"
+        return f"{self.plant_name}_{self.manoeuvre}_{self.controller_name if self.control else 'off'}"
+
+
+Loops = Mapping[tuple[str, str], Settings]
+"""The settings of the loops by plant and controller of the cases."""
 
 
 class Outcome(NamedTuple):
@@ -56,9 +71,10 @@ class Outcome(NamedTuple):
     metrics: Metrics
     results: Results
 
-    @property
-    def row(self) -> Row:
-        return Row(self.case.plant_name, self.case.manoeuvre, self.case.control, self.metrics)
+    def row(self, several: bool = False) -> Row:
+        """Of the table; `several` controllers are in it."""
+        damping = self.case.controller_name if several else "on"
+        return Row(self.case.plant_name, self.case.manoeuvre, damping if self.case.control else "off", self.metrics)
 
     @property
     def record(self) -> dict[str, Any]:
@@ -67,58 +83,72 @@ class Outcome(NamedTuple):
             "plant": self.case.plant_name,
             "manoeuvre": self.case.manoeuvre,
             "control": self.case.control,
+            "controller": self.case.controller_name,
             **values(self.metrics),
         }
 
 
-def cases(plants: Sequence[str], manoeuvres: Sequence[str]) -> list[Case]:
-    """All combinations, the runs without and with damping next to each other.
+def cases(plants: Sequence[str], manoeuvres: Sequence[str], controllers: Sequence[str]) -> list[Case]:
+    """All combinations, the run without damping and those with each controller next to each other.
 
     Raises:
-        DrivelineError: two plants have the same name, by which their files would be told apart.
+        DrivelineError: two plants or controllers have the same name, by which their files would be told apart; or there
+            is no controller.
     """
-    require_different(plants)
+    by_name(plants, "plant")
+    if not by_name(controllers, "controller"):
+        raise DrivelineError("there is no controller to compare; NoDamping is one too")
     return [
-        Case(plant, manoeuvre, control) for plant in plants for manoeuvre in manoeuvres for control in (False, True)
+        Case(plant, manoeuvre, controller)
+        for plant in plants
+        for manoeuvre in manoeuvres
+        for controller in (WITHOUT, *controllers)
     ]
 
 
+def loops_of(given: Loops) -> Loops:
+    """The loops of all cases: those with controllers, and of each plant that whose first one is switched off."""
+    off = {(plant, WITHOUT): made.replace(control=False) for (plant, _), made in reversed(list(given.items()))}
+    return {**given, **off}
+
+
 def run_case(
-    case: Case,
-    output: Path,
-    settings: Mapping[str, Settings],
-    manoeuvres: Manoeuvres = MANOEUVRES,
-    format: str = "csv",
+    case: Case, output: Path, loops: Loops, manoeuvres: Manoeuvres = MANOEUVRES, format: str = "csv"
 ) -> Outcome:
     """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
     manoeuvre = manoeuvres[case.manoeuvre]
-    results = simulate(manoeuvre, settings[case.plant], control=case.control)
+    results = simulate(manoeuvre, loops[case.plant, case.controller])
     write_signals(at_samples(results), output / case.file_name, format)
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
 def run_cases(
-    todo: Sequence[Case],
-    output: Path,
-    settings: Mapping[str, Settings],
-    manoeuvres: Manoeuvres = MANOEUVRES,
-    format: str = "csv",
+    todo: Sequence[Case], output: Path, loops: Loops, manoeuvres: Manoeuvres = MANOEUVRES, format: str = "csv"
 ) -> list[Outcome]:
     """Runs the cases in parallel; their outcomes in the order of the cases.
 
     Args:
         output: folder for the files of signals.
-        settings: by the plants of the cases.
         format: of those files, one of `harness.views.signals_file.FORMATS`.
     """
-    one = partial(run_case, output=output, settings=settings, manoeuvres=manoeuvres, format=format)
-    return run_many(one, todo)
+    return run_many(partial(run_case, output=output, loops=loops, manoeuvres=manoeuvres, format=format), todo)
+
+
+def together(outcomes: Iterable[Outcome]) -> list[list[Outcome]]:
+    """What is of one manoeuvre on one plant: the run without damping, then those with each controller."""
+    return [list(each) for _, each in groupby(outcomes, lambda outcome: outcome.case[:2])]
+
+
+def rows_of(outcomes: Sequence[Outcome]) -> list[Row]:
+    """Of the table of all runs."""
+    several = len({outcome.case.controller for outcome in outcomes}) > 2
+    return [outcome.row(several) for outcome in outcomes]
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path, title: str = DAMPINGS) -> list[Path]:
     """Writes the table as Markdown and all metrics as CSV; returns the files."""
     table, metrics = folder / "table.md", folder / "metrics.csv"
-    write_markdown([outcome.row for outcome in outcomes], table, title)
+    write_markdown(rows_of(outcomes), table, title)
     write_metrics([outcome.record for outcome in outcomes], metrics)
     return [table, metrics]
 
@@ -134,12 +164,12 @@ def write_figures(
         usual = name in COMPARED and manoeuvres[name].description == MANOEUVRES[name].description
         return name in DRAWN or not usual
 
-    pairs = zip(outcomes[::2], outcomes[1::2], strict=True)
-    drawn, files = [(off, on) for off, on in pairs if is_drawn(off.case.manoeuvre)], list[Path]()
+    drawn, files = [each for each in together(outcomes) if is_drawn(each[0].case.manoeuvre)], list[Path]()
     with progress(len(drawn), "drawing") as done:
-        for k, (off, on) in enumerate(drawn):
+        for k, each in enumerate(drawn):
             done(k)
-            manoeuvre, plant = manoeuvres[off.case.manoeuvre], off.case.plant_name
+            manoeuvre, plant = manoeuvres[each[0].case.manoeuvre], each[0].case.plant_name
             plot = plot_drive if manoeuvre.dT is None else plot_step
-            files += plot((off.results, on.results), manoeuvre, plant, folder / f"{plant}_{manoeuvre.name}", options)
+            runs = {outcome.case.controller_name: outcome.results for outcome in each}
+            files += plot(runs, manoeuvre, plant, folder / f"{plant}_{manoeuvre.name}", options)
     return files

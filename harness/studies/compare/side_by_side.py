@@ -2,57 +2,65 @@
 
 from collections.abc import Iterable, Mapping
 from functools import partial
+from itertools import product
 from os import PathLike
 from typing import Unpack
 
 from ...base.argument_kinds import BLOCKS, require_each
 from ...base.errors import DrivelineError
-from ...loop.places import PLANTS, NameOrFile
-from ...loop.settings import Changes, Settings
+from ...loop.places import PLACES, PLANTS, NameOrFile
+from ...loop.settings import RunChanges, Settings
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
 from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
-from .compare import Case, cases
+from .compare import Case, Loops, cases, loops_of
 
 
 def compare(
     manoeuvres: Iterable[Manoeuvre] = tuple(MANOEUVRES[name] for name in COMPARED),
     plants: Iterable[NameOrFile] = PLANTS,
-    **changes: Unpack[Changes],
+    controllers: Iterable[NameOrFile] = PLACES["controller"][:1],
+    **changes: Unpack[RunChanges],
 ) -> dict[Case, Metrics]:
-    """Every manoeuvre on every plant, with the damping off and on, on all cores; see also `driveline compare`.
+    """Every manoeuvre on every plant, without damping and with each controller, on all cores; see also
+    `driveline compare`.
 
         found = driveline.compare([driveline.MANOEUVRES["tipin15"]])
-        driveline.frame(found)[["settling_time", "overshoot"]]  # a row a run: plant, manoeuvre, control
+        driveline.frame(found)[["settling_time", "overshoot"]]  # a row a run: plant, manoeuvre, controller
 
     Args:
         manoeuvres: each of a name of its own.
         plants: names of plants of the project, or paths of FMUs.
-        changes: fields of the settings that are to be others, as of `simulate`, for all runs; plant and control are
-            those of each run.
+        controllers: names of controllers of the project, or paths of FMUs; the first is the one that is switched off.
+        changes: fields of the settings that are to be others, as of `simulate`, for all runs.
 
     Returns:
-        The metrics of each run, in SI units, by (plant, manoeuvre, control): the name or path of the plant, the name of
-        the manoeuvre, and whether the damping was on.
+        The metrics of each run, in SI units, by (plant, manoeuvre, controller): the name or path of the plant, the name
+        of the manoeuvre, the name or path of the controller or "without damping".
 
     Raises:
-        DrivelineError: two plants or two manoeuvres have the same name, and what `simulate` raises.
-        TypeError: there is no such field, or it is plant or control.
+        DrivelineError: two plants, manoeuvres or controllers have the same name, and what `simulate` raises.
+        TypeError: there is no such field, or it is plant, controller or control.
     """
-    if own := changes.keys() & {"plant", "control"}:
+    if own := changes.keys() & {"plant", "controller", "control"}:
         raise TypeError(f"compare sets {' and '.join(sorted(own))} itself, for each run")
     by_name: dict[str, Manoeuvre] = {}
     for manoeuvre in require_each("manoeuvres", manoeuvres, Manoeuvre, "manoeuvres, such as MANOEUVRES['tipin15']"):
         if by_name.setdefault(manoeuvre.name, manoeuvre) is not manoeuvre:
             raise DrivelineError(f"two manoeuvres are called {manoeuvre.name}; rename one")
-    todo = cases([str(plant) for plant in require_each("plants", plants, str | PathLike, BLOCKS)], list(by_name))
-    one = partial(_metrics, manoeuvres=by_name, settings=Settings().replace(**changes))
+    blocks = {"plants": plants, "controllers": controllers}
+    each = [
+        [str(block) for block in require_each(name, given, str | PathLike, BLOCKS)] for name, given in blocks.items()
+    ]
+    common, todo = Settings().replace(**changes), cases(each[0], list(by_name), each[1])
+    loops = loops_of({(p, c): common.replace(plant=p, controller=c) for p, c in product(*each)})
+    one = partial(_metrics, manoeuvres=by_name, loops=loops)
     return dict(zip(todo, run_many(one, todo, label="comparing"), strict=True))
 
 
-def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], settings: Settings) -> Metrics:
+def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], loops: Loops) -> Metrics:
     manoeuvre = manoeuvres[case.manoeuvre]
-    return evaluate(simulate(manoeuvre, settings, plant=case.plant, control=case.control), manoeuvre)
+    return evaluate(simulate(manoeuvre, loops[case.plant, case.controller]), manoeuvre)

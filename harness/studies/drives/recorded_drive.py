@@ -6,6 +6,7 @@ from typing import Unpack
 
 from ...base.argument_kinds import BLOCKS, require_each, require_kind
 from ...base.errors import DrivelineError
+from ...base.known_names import by_name
 from ...loop.built_fmus import require_there
 from ...loop.places import PLACES, PLANTS, NameOrFile
 from ...loop.settings import RunChanges, Settings
@@ -13,7 +14,7 @@ from ...manoeuvres.road_load import Track
 from ...manoeuvres.speed_following import require_held
 from ...recordings.drive import Drive
 from ...recordings.plausibility import of_drive
-from .replay import Ride, by_name, car_of
+from .replay import Ride, car_of
 from .replay import replay as rides
 from .verdict import followed_speed, tell
 
@@ -60,7 +61,7 @@ def replay(
     require_held(held)
     if not controllers:
         raise DrivelineError("there is no controller to drive with; NoDamping is one too")
-    named = by_name([str(controller) for controller in controllers])
+    named = by_name(map(str, controllers), "controller")
     common = Settings(plant).replace(**changes)
     given = {name: common.replace(controller=controller) for name, controller in named.items()}
     for each in given.values():

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
-from ...base.errors import DrivelineError
 from ...base.progress import part, progress
 from ...cosimulation.wiring import fit
 from ...loop.settings import Settings, loop
@@ -25,6 +24,7 @@ from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
 from ...views.figure_options import PLAIN, FigureOptions
 from ...views.metrics_table import values, write_metrics, write_rides
+from ...views.signal_lines import WITHOUT
 from ...views.signals_file import write_signals
 
 KEPT = [
@@ -50,9 +50,6 @@ CLOSE = 0.1
 MOST_DRIVES = 6
 """Of the car without control, each with the force that the one before has lacked."""
 
-UNDAMPED = "without damping"
-"""The ride with which the others are compared, as tables name it."""
-
 
 @dataclass(frozen=True, eq=False)
 class Ride:
@@ -70,7 +67,7 @@ class Ride:
 
     @property
     def control(self) -> bool:
-        return self.controller != UNDAMPED
+        return self.controller != WITHOUT
 
     @property
     def suffix(self) -> str:
@@ -143,24 +140,11 @@ def replay(track: Track, load: RoadLoad, controllers: Mapping[str, Settings], he
         one = partial(_damped, manoeuvre, track, controllers)
         with part(done, MOST_DRIVES, len(controllers)):
             damped = run_many(one, controllers, workers=2)
-    return [ride_of(UNDAMPED, undamped, manoeuvre, track), *damped]
+    return [ride_of(WITHOUT, undamped, manoeuvre, track), *damped]
 
 
 def _damped(manoeuvre: Manoeuvre, track: Track, controllers: Mapping[str, Settings], controller: str) -> Ride:
     return ride_of(controller, signals_of(manoeuvre, controllers[controller]), manoeuvre, track)
-
-
-def by_name(controllers: Sequence[str]) -> dict[str, str]:
-    """The controllers (names or files), each once, by the names that tables and files give them.
-
-    Raises:
-        DrivelineError: two have the same name.
-    """
-    named: dict[str, str] = {}
-    for controller in controllers:
-        if named.setdefault(Path(controller).stem, controller) != controller:
-            raise DrivelineError(f"two controllers are called {Path(controller).stem}; rename the file of one")
-    return named
 
 
 def records(rides: Sequence[Ride], track: Track, plant: str) -> list[dict[str, Any]]:

@@ -16,8 +16,8 @@ from ...views.page.figures import Figure, figure
 from ...views.page.report import Heading, Row, Section, Table, of_metrics, write_report
 from ...views.page.thinning import thinned
 from ...views.panels import Axis, Curve, Panel, within
-from ...views.replay_figure import PIECE, SI, How, looks_of, roughest, speeds, swings, torques
-from ...views.signal_lines import Line, column
+from ...views.replay_figure import PIECE, SI, roughest, speeds, swings, torques
+from ...views.signal_lines import Line, Look, Runs, column, looks_of
 
 SEGMENT = 2048
 """Samples of the spectra's segments: 4 s."""
@@ -116,11 +116,11 @@ def _figures(rides: Rides, recorded: tuple[np.ndarray, np.ndarray], starts: Sequ
     yield Section("How often it swings how much", "Share of the time in which a swing is exceeded.", figures=[shares])
 
 
-def _acceleration(name: str, looks: Mapping[str, How]) -> Line:
+def _acceleration(name: str, looks: Mapping[str, Look]) -> Line:
     return Line(column("plant.a_body"), name, *looks[name])
 
 
-def _densities(runs: Mapping[str, np.ndarray], looks: Mapping[str, How]) -> Panel:
+def _densities(runs: Runs, looks: Mapping[str, Look]) -> Panel:
     curves = []
     for name, signals in runs.items():
         T_gear = signals["plant.T_gear"]
@@ -130,7 +130,7 @@ def _densities(runs: Mapping[str, np.ndarray], looks: Mapping[str, How]) -> Pane
     return Panel("gear torque in N·m/√Hz", curves, scale="log")
 
 
-def _exceeded(runs: Mapping[str, np.ndarray], looks: Mapping[str, How]) -> tuple[Panel, float]:
+def _exceeded(runs: Runs, looks: Mapping[str, Look]) -> tuple[Panel, float]:
     """Over the swing the share of the time in which it is exceeded; and the largest swing."""
     swings = {name: np.sort(amplitude(signals["plant.T_gear"], T_S)) for name, signals in runs.items()}
     levels = np.linspace(0.0, max(float(swing[-1]) for swing in swings.values()), 400)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.recfunctions import append_fields, repack_fields
 
-from ...base.known_names import require_different
+from ...base.known_names import by_name
 from ...cosimulation.experiment import Experiment
 from ...cosimulation.runs import run
 from ...cosimulation.system import Connection, Port, System
@@ -91,7 +91,7 @@ class FaultRunner:
         Raises:
             DrivelineError: two plants have the same name, by which the cases are distinguished.
         """
-        require_different(settings)
+        by_name(settings, "plant")
         self.plants = tuple(settings)
         self._injector = injector.absolute()
         self._settings = {plant: anywhere(of_plant) for plant, of_plant in settings.items()}

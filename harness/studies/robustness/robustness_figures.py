@@ -7,10 +7,11 @@ import numpy as np
 
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...views.annotations import PRINTED
-from ...views.colours import COLOURS, GREY
+from ...views.colours import GREY
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import plot
 from ...views.panels import DASHED, SOLID, Axis, Curve, Level, Panel
+from ...views.signal_lines import CONTROLLERS, WITHOUT, Runs
 from ...views.step_figure import plot_step
 from .case_runs import CaseRunner
 from .draws import draw
@@ -42,7 +43,7 @@ def distributions(summaries: Sequence[Summary], heading: str = "") -> list[Panel
         window = bounds[0] * column.factor, bounds[1] * column.factor
         x = Axis(f"{column.plain_heading} in {PRINTED.get(column.unit, column.unit)}", window, "log")
         curves = [
-            _distribution(summary, metric, window[0], COLOURS[k % len(COLOURS)], 0.9 if k else 1.6)
+            _distribution(summary, metric, window[0], CONTROLLERS[k % len(CONTROLLERS)][0], 0.9 if k else 1.6)
             for k, summary in enumerate(summaries)
         ]
         parts = [*curves, Level(95.0, GREY, DASHED)]
@@ -71,9 +72,14 @@ def plot_distributions(summaries: Sequence[Summary], plant: str, caption: str, s
     return plot(rows, Axis("", (0.0, 1.0)), title, stem, FigureOptions(caption), size=(7.2, 1.95), key=4)
 
 
+def both_runs(runner: CaseRunner, case: Case) -> Runs:
+    """A case again, without damping and with it."""
+    return {name: runner.results(case, name != WITHOUT) for name in (WITHOUT, case.controller)}
+
+
 def plot_draw(runner: CaseRunner, case: Case, caption: str, stem: Path) -> list[Path]:
     """Runs a case again, without damping and with it, and draws both; returns the files."""
-    runs = [runner.results(case, control) for control in (False, True)]
+    runs = both_runs(runner, case)
     drawn = f"draw {draw(case.number, runner.seed)}; {case.controller}"
     options = FigureOptions("\n".join(filter(None, (drawn, caption))))
     return plot_step(runs, MANOEUVRES[case.manoeuvre], case.plant, stem, options)

@@ -9,15 +9,15 @@ import numpy as np
 
 from ...base.errors import SimulationError
 from ...manoeuvres.catalogue import MANOEUVRES
+from ...views.page.compared_runs import Compared, run_sections
 from ...views.page.figures import Figure
-from ...views.page.paired_runs import Pair, pair_sections
 from ...views.page.report import Heading, Row, Section, Table, write_report
 from ...views.page.thinning import thinned
 from ...views.panels import Axis
 from .case_runs import CaseRunner
 from .draws import draw
 from .outcome import METRICS, SHOWN, VERDICTS, Outcome
-from .robustness_figures import distributions
+from .robustness_figures import both_runs, distributions
 from .summary import LEVELS, Summary, cells, goal, summaries
 
 
@@ -37,7 +37,7 @@ def report(outcomes: Sequence[Outcome], runner: CaseRunner, provenance: Mapping[
         Section(
             f"The worst draws of {found[0].controller}", "Those that settle last.", _worst(own, drawn, runner.seed)
         ),
-        *(pair_sections(drawn) if drawn else ()),
+        *(run_sections(drawn) if drawn else ()),
     ]
     count = len(found[0].outcomes)
     write_report(f"{count} random cars and sensors", verdict(found), sections, provenance, path)
@@ -80,19 +80,18 @@ def _distributions(found: Sequence[Summary]) -> Section:
     return Section("Distributions", text, figures=[Figure(choices, Axis("", (0.0, 1.0)), control="Runs")])
 
 
-def _worst_runs(own: Sequence[Summary], runner: CaseRunner) -> Iterator[tuple[str, Pair]]:
+def _worst_runs(own: Sequence[Summary], runner: CaseRunner) -> Iterator[tuple[str, Compared]]:
     for summary in own:
         case = summary.worst.case
         with suppress(SimulationError):  # a car that is not fit to be driven without damping
-            runs = (runner.results(case, control) for control in (False, True))
-            yield _name(summary), Pair(MANOEUVRES[case.manoeuvre], *runs)
+            yield _name(summary), Compared(MANOEUVRES[case.manoeuvre], both_runs(runner, case))
 
 
 def _name(summary: Summary) -> str:
     return f"{summary.manoeuvre} on {summary.plant}, draw {summary.worst.case.number}"
 
 
-def _worst(own: Sequence[Summary], drawn: Mapping[str, Pair], seed: int) -> Table:
+def _worst(own: Sequence[Summary], drawn: Mapping[str, Compared], seed: int) -> Table:
     column = SHOWN["settling_time"]
     headings = [Heading("run"), Heading(f"{column.plain_heading}, {column.unit}", number=True), Heading("draw")]
     rows = []

@@ -134,7 +134,7 @@ def line_of(piece: str) -> int:
         ),
         (
             *("my_vehicle", EXAMPLE.replace("operators.tanh(x.v / p.v_rr)", "(x.v > 0.0 and 1.0)"), "native"),
-            f"line {line_of('operators.tanh(x.v / p.v_rr)')}: MyVehicle cannot be built: TypeError: a model",
+            f"line {line_of('operators.tanh(x.v / p.v_rr)')}: MyVehicle cannot be built: `x.v > 0.0 and 1.0` is known",
         ),
     ],
 )

@@ -13,7 +13,7 @@ from driveline.harness.base.digest import digest
 from driveline.harness.commands.cli import main
 from tests.harness.commands import Capsys
 
-NAME = "TwoMassDriveline_tipin0_on"
+NAME = "TwoMassDriveline_tipin0_DampingController"
 
 
 def answer(capsys: Capsys, *words: str) -> tuple[int, str, str]:

@@ -191,7 +191,6 @@ def test_a_mistake_gets_a_hint_and_exit_code_2(capsys, monkeypatch, tmp_path, ar
 @pytest.mark.parametrize(
     ("command", "option", "values"),
     [
-        ("compare", "--controller", ("SpeedWashout", "PaperObserver")),
         ("simulate", "--manoeuvre", ("tipin15", "drive")),
         ("simulate", "--seed", ("1", "2")),
         ("robustness", "--cases", ("10", "20")),
@@ -324,7 +323,7 @@ def test_simulate_tells_the_metrics_of_its_run(simulate, tmp_path):
     (run,) = document["runs"]
     assert (run["plant"], run["manoeuvre"], run["control"]) == (PLANTS[0], "tipin15", True)
     assert 0.05 < run["settling_time_s"] < 0.1
-    assert document["files"] == [str(folder / "TwoMassDriveline_tipin15_on.csv")]
+    assert document["files"] == [str(folder / "TwoMassDriveline_tipin15_DampingController.csv")]
     (code, out, _), _ = simulate()
     assert code == 0
     assert f" {1e3 * run['settling_time_s']:.0f} " in next(line for line in out.splitlines() if "tipin15    " in line)
@@ -334,13 +333,13 @@ def test_with_steps_that_miss_the_samples_of_the_controller_it_is_said_why_there
     (code, out, _), folder = simulate("--step", "0.0015")
     assert code == 0
     assert "no metrics: the results are 1.5 ms apart; the metrics need a whole fraction" in out
-    assert (folder / "TwoMassDriveline_tipin15_on.csv").is_file()
+    assert (folder / "TwoMassDriveline_tipin15_DampingController.csv").is_file()
 
 
 def test_the_kind_of_the_figure_and_what_it_shows_are_chosen(simulate):
     (code, out, _), folder = simulate("--step", "0.002", "--plot", "--window", "0.9,1.4", "--figures", "svg")
     assert code == 0
-    assert "tipin15_on.svg" in out
+    assert "tipin15_DampingController.svg" in out
     assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".svg"}
     assert simulate("--step", "0.002", "--plot", "--window", "0.9,1.4", "--figures", "svg", "--quiet")[0] == (0, "", "")
 
@@ -364,7 +363,7 @@ def test_an_fmu_of_somebody_else_takes_its_place_under_its_own_names(simulate, t
     renamed = ("--map", "plant.T_gear=Shaft.tau", "--map", "plant.v=speed")
     (code, _, err), folder = simulate("--plant", str(car), *renamed)
     assert (code, err) == (0, "")
-    signals = read_csv(folder / "Theirs_tipin15_on.csv")
+    signals = read_csv(folder / "Theirs_tipin15_DampingController.csv")
     assert signals["plant.v"][0] == pytest.approx(15 / 3.6)
     (code, _, err), _ = simulate("--plant", str(car), "--map", "plant.T_gear")
     assert code == 2
@@ -423,7 +422,14 @@ def test_compare_as_a_document_has_every_metric_of_every_run(capsys, both_built,
     document = json.loads(out)
     off, on = document["runs"]
     assert (off["plant"], off["manoeuvre"], off["control"], on["control"]) == (PLANTS[0], "prbs15", False, True)
-    assert set(off) == {"plant", "manoeuvre", "control", "absent", *(metric.key for metric in declared(Metrics))}
+    assert set(off) == {
+        "plant",
+        "manoeuvre",
+        "control",
+        "controller",
+        "absent",
+        *(metric.key for metric in declared(Metrics)),
+    }
     assert (off["settling_time_s"], off["absent"]["settling_time_s"]) == (None, "the manoeuvre is no step")
     drawn = [f"{PLANTS[0]}_prbs15.png"]
     assert document["files"] == [str(tmp_path / name) for name in ("table.md", "metrics.csv", *drawn)]

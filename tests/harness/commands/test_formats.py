@@ -28,7 +28,7 @@ def driven(native, tmp_path_factory):
     return folder
 
 
-def path(driven, name, stem="TwoMassDriveline_prbs15_on"):
+def path(driven, name, stem="TwoMassDriveline_prbs15_DampingController"):
     return driven / name / f"{stem}{FORMATS[name].ending}"
 
 
@@ -57,7 +57,7 @@ def test_rides_and_comparisons_are_written_in_the_format(driven, name, native, t
     record = json.loads((tmp_path / f"{recording.stem}.json").read_text())
     assert {ride.name for ride in rides} <= set(record["files"])
     assert main(["compare", "--manoeuvre", "prbs15", *options, "--output", str(tmp_path)]) == 0
-    stems = ("TwoMassDriveline_prbs15_off", "TwoMassDriveline_prbs15_on")
+    stems = ("TwoMassDriveline_prbs15_off", "TwoMassDriveline_prbs15_DampingController")
     runs = {tmp_path / "runs" / f"{stem}{kind}" for stem in stems for kind in (ending, ".json")}
     assert set((tmp_path / "runs").iterdir()) == runs
     for file in (*rides, tmp_path / "runs" / f"{stems[0]}{ending}"):
@@ -87,7 +87,7 @@ def tipin(tmp_path):
 def test_a_run_says_which_file_it_drove(native, tmp_path, tipin, capsys):
     command = ["simulate", "--manoeuvre", str(tipin), "--fmus", str(native.parent), "--output", str(tmp_path / "out")]
     assert main(command) == 0
-    record = json.loads((tmp_path / "out" / "TwoMassDriveline_tip_on.json").read_text())
+    record = json.loads((tmp_path / "out" / "TwoMassDriveline_tip_DampingController.json").read_text())
     assert str(tipin) in record["inputs"]
     assert main(command) == 0, "the same again"
     tipin.write_text(TIPIN.replace("112", "100"), encoding="utf-8")

@@ -190,7 +190,7 @@ def test_a_figure_says_what_was_set(command: str, options: str, message: str) ->
 
 
 def test_a_case_is_named_in_words() -> None:
-    assert str(Case("theirs/car.fmu", "tipin15", True)) == "tipin15 on car, damping on"
+    assert str(Case("theirs/car.fmu", "tipin15", "mine.fmu")) == "tipin15 on car, mine"
 
 
 def test_all_kinds_of_a_figure_are_one_line_and_every_other_file_has_its_own(capsys: Capsys) -> None:

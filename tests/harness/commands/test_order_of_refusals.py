@@ -10,7 +10,7 @@ from driveline.harness.manoeuvres.town_drive import PATH
 from tests.harness.commands import Capsys
 
 FIRST = {
-    "simulate": "TwoMassDriveline_tipin15_on.csv",
+    "simulate": "TwoMassDriveline_tipin15_DampingController.csv",
     "record": "TwoMassDriveline_prbs_off.csv",
     "replay": f"{PATH.stem}_metrics.csv",
     "faults": "faults.csv",

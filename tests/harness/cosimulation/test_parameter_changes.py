@@ -174,7 +174,7 @@ def test_where_nothing_runs_in_time_a_change_is_refused(native: Path) -> None:
 def test_the_command_takes_it_several_times_and_records_it(native: Path, tmp_path: Path, capsys: Any) -> None:
     command = ["simulate", "--fmus", str(native.parent), "--output", str(tmp_path), "--quiet"]
     assert main([*command, "--set", "controller.k_d@1.0=1.5", "--set", "controller.k_d@1.5=2.0"]) == 0
-    record = (tmp_path / "TwoMassDriveline_tipin15_on.json").read_text()
+    record = (tmp_path / "TwoMassDriveline_tipin15_DampingController.json").read_text()
     assert '"controller.k_d@1.0": 1.5' in record
     assert '"controller.k_d@1.5": 2.0' in record
     assert main([*command, "--set", "controller.k_d@1.0=201"]) != 0

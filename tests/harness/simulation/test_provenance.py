@@ -26,7 +26,7 @@ from driveline.harness.simulation import provenance, simulate
 from driveline.harness.simulation.provenance import require_same_run
 
 RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
-NAME = "TwoMassDriveline_prbs15_on"
+NAME = "TwoMassDriveline_prbs15_DampingController"
 
 
 @pytest.fixture(scope="module")

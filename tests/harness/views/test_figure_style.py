@@ -69,15 +69,16 @@ def run(manoeuvre: Any, swing: float, duration: float, with_estimate: bool = Tru
     return found
 
 
+NAMES = "without damping", "mine", "theirs"
 STEPS = run(TIPIN, 60.0, 4.0), run(TIPIN, 8.0, 4.0)
 DRIVES = run(DRIVE, 60.0, 20.0), run(DRIVE, 8.0, 20.0)
 RECORDED = (np.array([0.0, 10.0, 20.0]), np.array([3.0, 5.0, 7.0]))
 UNITS = {"v": FileUnit("km/h", 1.0 / 3.6), "T_mot": FileUnit("kNm", 1e3)}
-RIDES: dict[str, np.ndarray] = {"without damping": DRIVES[0], "mine": DRIVES[1], "theirs": DRIVES[1]}
+RIDES: dict[str, np.ndarray] = dict(zip(NAMES, (*DRIVES, DRIVES[1]), strict=True))
 
 PLOTS: dict[str, Callable[[Path, FigureOptions], list[Path]]] = {
-    "step": lambda stem, options: plot_step(STEPS, TIPIN, "Plant", stem, options),
-    "drive": lambda stem, options: plot_drive(DRIVES, DRIVE, "Plant", stem, options),
+    "step": lambda stem, options: plot_step(dict(zip(NAMES, STEPS, strict=False)), TIPIN, "Plant", stem, options),
+    "drive": lambda stem, options: plot_drive(dict(zip(NAMES, DRIVES, strict=False)), DRIVE, "Plant", stem, options),
     "run": lambda stem, options: plot_run(STEPS[0], TIPIN, "Plant", stem, options),
     "run of a drive": lambda stem, options: plot_run(DRIVES[0], DRIVE, "Plant", stem, options),
     "replay": lambda stem, options: plot_replay(RIDES, RECORDED, "a drive", stem, options, UNITS),
@@ -318,7 +319,9 @@ def test_nothing_but_png_and_pdf_is_written_unless_asked(tmp_path: Path) -> None
 
 
 def test_what_another_controller_does_not_show_is_not_drawn(tmp_path: Path) -> None:
-    shown = [run(TIPIN, swing, 4.0, with_estimate=False) for swing in (60.0, 8.0)]
+    shown = {
+        name: run(TIPIN, swing, 4.0, with_estimate=False) for name, swing in zip(NAMES, (60.0, 8.0, 7.0), strict=True)
+    }
     files = plot_step(shown, TIPIN, "Plant", tmp_path / "run", FigureOptions(kinds=("png",)))
     assert all(file.stat().st_size > 0 for file in files)
 

@@ -15,7 +15,6 @@ from rich.table import Table
 from driveline.harness.base.atomic_files import complete, remove, write_text
 from driveline.harness.base.plain_text import reason
 from driveline.harness.commands.settings import dampings
-from driveline.harness.loop.settings import Settings
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics, RideMetrics
 from driveline.harness.views.metrics_table import (
@@ -40,11 +39,11 @@ def metrics(absent=None, **values):
 OFF = Row(
     "Plant",
     "tipin15",
-    False,
+    "off",
     metrics(settling_time=1.758, overshoot=1.16, gear_torque_rms=26.5, stationary_torque_change=-1e-9),
 )
 WHY = {"response_delay": "no step", "overshoot": "no step"}
-ON = Row("Plant", "tipin15", True, metrics(settling_time=0.114, withheld_time=0.012, absent=WHY))
+ON = Row("Plant", "tipin15", "on", metrics(settling_time=0.114, withheld_time=0.012, absent=WHY))
 
 
 def shown(row):
@@ -94,12 +93,13 @@ def test_the_terminal_table_names_plant_units_and_runs():
 
 
 def test_the_title_names_a_controller_that_is_not_the_usual_one(tmp_path):
-    title = dampings(Settings("Plant", "fmus/SpeedWashout.fmu"))
+    title = dampings(["SpeedWashout"])
     assert title.endswith(" by SpeedWashout")
     assert printed(runs_table([OFF, ON], title)).splitlines()[0].strip() == title
     write_markdown([OFF, ON], tmp_path / "table.md", title)
     assert (tmp_path / "table.md").read_text(encoding="utf-8").splitlines()[0] == title
-    assert " by " not in dampings(Settings("Plant", "fmus/DampingController.fmu"))
+    assert " by " not in dampings(["DampingController"])
+    assert dampings(["DampingController", "SpeedWashout"]) == "without damping (off) and with each controller"
 
 
 def test_rides_stand_one_below_the_other_with_their_ratio_to_the_first():

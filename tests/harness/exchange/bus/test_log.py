@@ -97,7 +97,7 @@ def test_a_gain_error_of_the_receiver_is_not_on_the_bus(results, tmp_path: Path)
 def test_a_run_is_logged_and_replayed(native, tmp_path: Path, form: str, capsys: pytest.CaptureFixture[str]) -> None:
     options = ["--fmus", str(native.parent), "--output", str(tmp_path), "--quiet"]
     assert main(["simulate", "--manoeuvre", "tipin15", "--frames", form, *options]) == 0
-    stem = tmp_path / "TwoMassDriveline_tipin15_on"
+    stem = tmp_path / "TwoMassDriveline_tipin15_DampingController"
     recording = ["replay", f"{stem}.{form}", "--plant", "TwoMassDriveline", *options]
     assert main(recording) == 2
     assert "give the database that says what they mean, --dbc FILE" in capsys.readouterr().err

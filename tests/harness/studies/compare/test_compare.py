@@ -1,6 +1,7 @@
 """The main job on a part of its cases."""
 
 import csv
+from shutil import copy
 from typing import Any
 
 import pytest
@@ -8,17 +9,19 @@ import pytest
 import driveline
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.base.progress import part
-from driveline.harness.loop.places import PLANTS
+from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
-from driveline.harness.studies.compare.compare import Outcome, cases, run_cases, write_figures, write_tables
+from driveline.harness.studies.compare.compare import Outcome, cases, loops_of, run_cases, write_figures, write_tables
 from driveline.harness.views import drive_figure, step_figure
+
+OURS = PLACES["controller"][0]
 
 
 def test_runs_without_and_with_damping_are_neighbours():
-    todo = cases(["A", "folder/B.fmu"], ["drive", "creep"])
+    todo = cases(["A", "folder/B.fmu"], ["drive", "creep"], ["Ours", "folder/mine.fmu"])
     assert [case.file_name for case in todo] == [
-        "A_drive_off", "A_drive_on", "A_creep_off", "A_creep_on",
-        "B_drive_off", "B_drive_on", "B_creep_off", "B_creep_on",
+        "A_drive_off", "A_drive_Ours", "A_drive_mine", "A_creep_off", "A_creep_Ours", "A_creep_mine",
+        "B_drive_off", "B_drive_Ours", "B_drive_mine", "B_creep_off", "B_creep_Ours", "B_creep_mine",
     ]  # fmt: skip
 
 
@@ -31,30 +34,44 @@ def test_each_manoeuvre_has_a_figure_but_five_of_the_usual_ten(monkeypatch, tmp_
     names = ["tipin15", "tipin15r", "creep", "drive", "prbs", "hill_start", "regen"]
     shares: list[float] = []
     with part(shares.append, 0.0):
-        write_figures([Outcome(each, metrics, results) for each in cases(["A"], names)], tmp_path)
+        write_figures([Outcome(each, metrics, results) for each in cases(["A"], names, ["B"])], tmp_path)
     assert drawn == [("step", "A_tipin15"), ("drive", "A_drive"), ("drive", "A_hill_start"), ("step", "A_regen")]
     assert shares == [0.0, 0.25, 0.5, 0.75]
 
 
 def test_plants_and_manoeuvres_of_the_same_name_are_refused():
     with pytest.raises(DrivelineError, match="two plants are called A"):
-        cases(["A", "folder/A.fmu"], ["drive"])
+        cases(["A", "folder/A.fmu"], ["drive"], ["B"])
+    with pytest.raises(DrivelineError, match="two controllers are called B"):
+        cases(["A"], ["drive"], ["B", "folder/B.fmu"])
+    with pytest.raises(DrivelineError, match="there is no controller to compare"):
+        cases(["A"], ["drive"], [])
     slow, fast = (driveline.composed("tip", duration=1.0, T_driver=torque) for torque in (1.0, 2.0))
     with pytest.raises(DrivelineError, match="two manoeuvres are called tip; rename one"):
         driveline.compare([slow, fast])
 
 
-def test_a_program_gets_the_metrics_of_each_run_by_what_it_was(native):
+def test_a_program_gets_the_metrics_of_each_run_by_what_it_was(native, tmp_path):
     tipin = driveline.MANOEUVRES["tipin15"]
     settings = {"folder": native.parent, "seed": 2}
-    found = driveline.compare([tipin], ["TwoMassDriveline"], **settings)
-    assert list(found) == [("TwoMassDriveline", "tipin15", control) for control in (False, True)]
-    runs = {case: driveline.simulate(tipin, case.plant, control=case.control, **settings) for case in found}
+    controllers = [OURS, copy(native / f"{OURS}.fmu", tmp_path / "Mine.fmu")]
+    found = driveline.compare([tipin], ["TwoMassDriveline"], controllers, **settings)
+    assert list(found) == [("TwoMassDriveline", "tipin15", str(name)) for name in ("without damping", *controllers)]
+    runs = {
+        case: driveline.simulate(
+            tipin,
+            case.plant,
+            controller=case.controller if case.control else controllers[0],
+            control=case.control,
+            **settings,
+        )
+        for case in found
+    }
     expected = {case: driveline.evaluate(results, tipin) for case, results in runs.items()}
     assert driveline.frame(found).equals(driveline.frame(expected))
 
 
-@pytest.mark.parametrize("own", ["plant", "control", "gearbox"])
+@pytest.mark.parametrize("own", ["plant", "control", "controller", "gearbox"])
 def test_what_is_not_to_be_set_for_all_runs_is_refused_before_any_of_them(own):
     changes: Any = {own: "TwoMassDriveline"}
     with pytest.raises(TypeError, match=own):
@@ -65,8 +82,8 @@ def test_what_is_not_to_be_set_for_all_runs_is_refused_before_any_of_them(own):
 def compared(native, tmp_path_factory):
     """Folder with what a comparison of one step on both plants writes."""
     folder = tmp_path_factory.mktemp("compare")
-    settings = {plant: Settings(plant=plant, folder=native.parent) for plant in PLANTS}
-    outcomes = run_cases(cases(PLANTS, ["tipin15"]), folder / "runs", settings)
+    loops = loops_of({(plant, OURS): Settings(plant=plant, folder=native.parent) for plant in PLANTS})
+    outcomes = run_cases(cases(PLANTS, ["tipin15"], [OURS]), folder / "runs", loops)
     write_tables(outcomes, folder)
     write_figures(outcomes, folder)
     return folder
@@ -85,7 +102,7 @@ def test_damping_settles_the_tip_in_on_both_plants(compared):
         assert abs(float(on["stationary_torque_change_N_m"])) < 0.2
         assert float(off["added_torque_peak_N_m"]) == 0.0
         assert {f"{plant}_tipin15.png"} <= names
-        assert {f"runs/{plant}_tipin15_{control}.csv" for control in ("off", "on")} <= names
+        assert {f"runs/{plant}_tipin15_{control}.csv" for control in ("off", OURS)} <= names
     # without damping the design model rings as in the reference study
     off, study = rows[PLANTS[0], "0"], {"settling_time_s": 1.758, "overshoot_1": 1.16, "gear_torque_rms_N_m": 26.5}
     study |= {"jerk_rms_to_50_Hz_m_per_s3": 24.8, "withheld_time_s": 0.0}

@@ -8,8 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.evaluate import T_S
+from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.studies.compare import compare_report
+from driveline.harness.studies.compare.compare import Outcome, cases
 from driveline.harness.studies.compare.compare_report import verdict
 from driveline.harness.studies.drives import replay_report
 from driveline.harness.studies.drives.replay_report import PIECE, WHOLE, _densities, _figures, _worst, roughest
@@ -23,11 +26,10 @@ from tests.harness.views.page.test_report_page import PROVENANCE
 
 
 def test_the_verdict_of_a_comparison_names_the_controller_and_the_run_in_which_it_helps_least() -> None:
-    pairs: Any = [SimpleNamespace(name=f"run {k}", ratio=ratio) for k, ratio in enumerate((0.3, 1.2, 0.5, np.nan))]
-    text = verdict(pairs, "SpeedWashout")
+    text = verdict({f"run {k}": ratio for k, ratio in enumerate((0.3, 1.2, 0.5, np.nan))}, "SpeedWashout")
     assert text.startswith("Damping by SpeedWashout lowers the oscillation of the gear torque (5-50 Hz rms) in 2 of 3")
     assert text.endswith("runs, to 50 % in the median and to 120 % where it helps least (run 1).")
-    assert verdict(pairs[3:], "SpeedWashout") == "No run has an oscillation that can be compared."
+    assert verdict({"a": np.nan}, "Mine") == "No run with Mine has an oscillation that can be compared."
 
 
 def ride(rough: float, size: float) -> np.ndarray:
@@ -94,23 +96,39 @@ def test_the_whole_drive_is_shown_from_its_beginning_to_its_end(monkeypatch: pyt
     assert section.figures[0].windows == windows
 
 
-def test_a_comparison_is_written_and_draws_each_run_without_damping_with_its_own_with_damping(
+def test_a_comparison_says_of_each_controller_what_it_is_worth_and_draws_its_runs_with_that_without_damping(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     drawn: dict[str, Any] = {}
-    monkeypatch.setattr(compare_report, "pair_sections", lambda pairs: drawn.update(pairs) or [])
-    for name in ("verdict", "_table", "_worst", "metric_dots"):
-        monkeypatch.setattr(compare_report, name, lambda *_: None)
-    written: list[tuple[str, Path]] = []
-    monkeypatch.setattr(compare_report, "write_report", lambda title, *others: written.append((title, others[-1])))
-    rows = [SimpleNamespace(manoeuvre=name, plant="Car", control=on) for name in "ab" for on in (False, True)]
-    runs: Any = [(row, f"{row.manoeuvre} {row.control}") for row in rows]
+    monkeypatch.setattr(compare_report, "run_sections", lambda compared: drawn.update(compared) or [])
+    written: list[Any] = []
+    monkeypatch.setattr(compare_report, "write_report", lambda *given: written.append(given))
+    swings = {"without damping": 10.0, "SpeedWashout": 4.0, "folder/mine.fmu": 2.0}
+    nothing = dict.fromkeys((metric.name for metric in declared(Metrics)), np.nan)
+    outcomes: Any = [
+        Outcome(case, Metrics(**nothing | {"gear_torque_rms": swings[case.controller]}, absent={}), case.file_name)  # type: ignore[arg-type]
+        for case in cases(["Car"], ["a", "b"], list(swings)[1:])
+    ]
     manoeuvres: Any = {"a": "tip-in", "b": "launch"}
-    compare_report.report(runs, manoeuvres, ["SpeedWashout"], {}, Path("page.html"))
-    assert written == [("Without and with SpeedWashout", Path("page.html"))]
-    assert {name: tuple(pair) for name, pair in drawn.items()} == {
-        "a on Car": ("tip-in", "a False", "a True"),
-        "b on Car": ("launch", "b False", "b True"),
+    compare_report.report(outcomes, manoeuvres, {}, Path("page.html"))
+    title, text, (rows, worst, _), *_, path = written[0]
+    assert (title, path) == ("Without and with SpeedWashout, mine", Path("page.html"))
+    assert all(part in text for part in ("to 40 % in the median", "Damping by mine lowers", "to 20 % in the median"))
+    assert [row.cells[2] for row in rows.table.rows] == ["off", "SpeedWashout", "mine"] * 2
+    assert [row.cells[1:] for row in worst.table.rows] == [
+        ["a on Car, SpeedWashout", "10.0", "4.0", "2.0"],
+        ["a on Car, mine", "10.0", "4.0", "2.0"],
+    ]
+    assert {name: tuple(each) for name, each in drawn.items()} == {
+        f"{name} on Car": (
+            manoeuvres[name],
+            {
+                "without damping": f"Car_{name}_off",
+                "SpeedWashout": f"Car_{name}_SpeedWashout",
+                "mine": f"Car_{name}_mine",
+            },
+        )
+        for name in "ab"
     }
 
 
@@ -120,16 +138,16 @@ def test_all_columns_of_the_faults_but_the_first_are_numbers() -> None:
     assert all(heading.number for heading in others)
 
 
-def test_of_each_pair_of_runs_the_metrics_without_and_with_damping_are_dots(monkeypatch: pytest.MonkeyPatch) -> None:
-    runs: Any = [
-        SimpleNamespace(manoeuvre=name, plant="car", metrics=value)
-        for name, values in {"tip-in": (4.0, 1.0), "launch": (5.0, 2.0), "drive": (6.0, 3.0)}.items()
-        for value in values
-    ]
+def test_of_each_run_the_metrics_without_damping_and_with_each_controller_are_dots(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    values = {"tip-in": (4.0, 1.0, 9.0), "launch": (5.0, 2.0, 8.0), "drive": (6.0, 3.0, 7.0)}
+    runs: Any = {run: dict(zip(("without damping", "A", "B"), each, strict=True)) for run, each in values.items()}
     shown = SimpleNamespace(of=lambda value: value), SimpleNamespace(factor=10.0, plain_heading="swing", unit="N·m")
     monkeypatch.setattr(metric_dots, "SHOWN", [shown])
     (drawn,) = metric_dots.metric_dots(runs)
     (panel,) = drawn.choices["swing, N·m"]
-    off, on = (part for part in panel.parts if isinstance(part, Points))
-    assert (off.x.tolist(), on.x.tolist()) == ([40.0, 50.0, 60.0], [10.0, 20.0, 30.0])
-    assert [panel.ticks[y] for y in off.y] == ["tip-in on car", "launch on car", "drive on car"]
+    dots = [part for part in panel.parts if isinstance(part, Points)]
+    assert [each.x.tolist() for each in dots] == [[40.0, 50.0, 60.0], [10.0, 20.0, 30.0], [90.0, 80.0, 70.0]]
+    assert len({each.color for each in dots}) == 3
+    assert [panel.ticks[y] for y in dots[0].y] == ["tip-in", "launch", "drive"]
