@@ -73,6 +73,7 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None, limi
     from ..design.design import AUTHORITY, gains_file, gains_of
     from ..design.design_weights import WEIGHTS, records
     from ..design.kalman import DesignError
+    from ..design.remedies import cause
     from ..studies.margins.car_properties import swing
     from ..studies.margins.modes import MEANT
 
@@ -82,7 +83,10 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None, limi
     if nothing := [name for name in most if most[name] == 0.0]:
         raise ParameterFileError(f"{limits}: {nothing[0]} = 0: a limit must be above 0 N.m")
     plant, motor, can = records(entries)
-    gains = gains_of(plant, motor, can, weights or WEIGHTS, most)
+    try:
+        gains = gains_of(plant, motor, can, weights or WEIGHTS, most)
+    except DesignError as refusal:
+        raise DesignError(f"{refusal}{cause(plant, motor, can, weights or WEIGHTS)}") from refusal
     # the limits of a user may be too small for any linear loop
     train = swing(PLANTS[0], entries, gains | dict.fromkeys(AUTHORITY, motor.T_max))
     if train.damped is None or train.damped.damping_ratio <= train.damping_ratio:

@@ -72,7 +72,11 @@ def test_nothing_depends_on_the_working_directory(tmp_path, monkeypatch, capsys)
     ("text", "message"),
     [
         ("J1 = 0.09\n", "line 1: J1 is not known"),
-        ("T_cyc = 0.2\n", "T_age would be 0.113; the controller takes"),
+        (
+            "T_cyc = 0.2\n",
+            "T_age would be 0.113; the controller takes 0.002 to 0.1 s: the drive train swings at 7.4 Hz; "
+            "T_cyc up to 0.17",
+        ),
         ("tau = 0.06\n", "the motor is too slow for this car (tau = 0.06 s, drive train 7.43 Hz): the "),
     ],
 )
@@ -82,6 +86,23 @@ def test_a_car_without_a_controller_is_answered_with_exit_code_2(tmp_path, capsy
     assert main(["design", "--vehicle", str(car), "--output", str(gains)]) == 2
     assert message in capsys.readouterr().err
     assert not gains.exists()
+
+
+@pytest.mark.slow
+def test_what_is_told_to_do_instead_does(tmp_path: Path, capsys: Capsys) -> None:
+    """And a little less of it does not."""
+    truck = {"m": 40000, "r": 0.5, "i": 22, "T_max": 1300, "F_z0": 115000, "J_1": 0.5, "J_2": 0.3, "phi_B": 0.157}
+    path = tmp_path / "truck.toml"
+
+    def refusal(C: float) -> str:
+        path.write_text("".join(f"{name} = {value}\n" for name, value in {**truck, "C": C}.items()), encoding="utf-8")
+        return "" if main(["design", "--vehicle", str(path), "--quiet"]) == 0 else capsys.readouterr().err
+
+    message = refusal(117.4)
+    assert "Ls_phi would be -0.1075; the controller takes -0.1 to 0.1 s: the drive train swings at 2.5 Hz; C" in message
+    enough = float(message.partition("C from ")[2].split()[0])
+    assert "would be -0.1" in refusal(0.95 * enough)
+    assert refusal(1.005 * enough) == ""
 
 
 def test_gains_of_another_car_are_not_replaced_unasked(tmp_path: Path, capsys: Capsys) -> None:
