@@ -45,7 +45,7 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def library_of(unpacked: Path, description: ModelDescription) -> Path:
     """What a program in the folder loads: for FMI 3.0 a library with the functions of FMI 2.0 that calls the FMU."""
-    name = f"{description.coSimulation.modelIdentifier}{fmpy.sharedLibraryExtension}"
+    name = f"{description.modelName}{fmpy.sharedLibraryExtension}"
     if description.fmiVersion == "2.0":
         return unpacked / "binaries" / fmpy.platform / name
     (unpacked / "bridge.c").write_text('#include "fmi2Functions.h"\n')

@@ -8,7 +8,7 @@ from random import Random
 from unittest.mock import patch
 
 from driveline.harness.base.errors import DrivelineError
-from driveline.harness.simulation import case_archive
+from driveline.harness.simulation import case_archive, provenance
 from driveline.harness.simulation.case_archive import Table, resumable
 from tests.fuzz.damage import spoiled_text
 from tests.fuzz.target import Attempt, Unclean, target
@@ -37,6 +37,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         """Of a campaign whose answers are those of its code."""
         with (
             patch.object(case_archive, "digest_behind", lambda _: f"sha256:{code}"),
+            patch.object(provenance, "commit", lambda: None),  # git takes most of the time
             resumable(path, TABLE, record, {"seed": seed}, {}, []) as made,
         ):
             for case in CASES:
