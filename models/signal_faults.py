@@ -125,17 +125,17 @@ def start(u: Input, p: Parameters) -> State:
     """What is sent at the start counts as what was sent before."""
     first, second = faults(p)
     sent = _sent(u, _late_one(p))
-    past = Past(*((value,) * HISTORY for value in sent))
+    past = Past._make((value,) * HISTORY for value in sent)
     return State(0.0, past, sent, _sent(u, first), _sent(u, second))
 
 
 def update(x: State, u: Input, p: Parameters) -> State:
     late, (first, second) = _late_one(p), faults(p)
     sent, samples = _sent(u, late), clip(floor(late.size / T_S - 0.5), 0.0, HISTORY - 1.0)
-    before = Sent(*(element(values, samples - 1.0) for values in x.past))
+    before = Sent._make(element(values, samples - 1.0) for values in x.past)
     return State(
         sample=x.sample + 1.0,
-        past=Past(*((new, *old[:-1]) for new, old in zip(sent, x.past, strict=True))),
+        past=Past._make((new, *old[:-1]) for new, old in zip(sent, x.past, strict=True)),
         late=_chosen(samples < 1.0, sent, before),
         last_1=_chosen(stays(first, u, x.sample, p), x.last_1, _sent(u, first)),
         last_2=_chosen(stays(second, u, x.sample, p), x.last_2, _sent(u, second)),

@@ -1,10 +1,13 @@
 """Rates of change of a function of records, by differences: exact on straight pieces, to the second order elsewhere."""
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ....fmus.native.arithmetic import COMPUTED
+from ....fmus.symbol import Symbol
 from ...base.errors import DrivelineError
 
 STEP = 1e-4
@@ -67,23 +70,57 @@ def like(record: Any, values: Sequence[Any]) -> Any:
     return made(record)
 
 
+class Everywhere(Symbol):
+    """A number or truth value at many points at a time, which rounds as Python does."""
+
+    __slots__ = ("values",)
+
+    def __init__(self, values: Any) -> None:
+        self.values = values
+
+    def after(self, operation: str, *operands: Any) -> "Everywhere":
+        values = (each.values if isinstance(each, Everywhere) else each for each in operands)
+        return Everywhere(AS_IN_PYTHON.get(operation, COMPUTED[operation])(*values))
+
+
+AS_IN_PYTHON = {
+    "SIN": np.vectorize(math.sin, otypes=[float]),
+    "COS": np.vectorize(math.cos, otypes=[float]),
+    "ATAN": np.vectorize(math.atan, otypes=[float]),
+    "TANH": np.vectorize(math.tanh, otypes=[float]),
+    "LOG": np.vectorize(math.log, otypes=[float]),
+    "EXP": np.vectorize(math.exp, otypes=[float]),
+}
+"""Operations whose last bit numpy rounds otherwise."""
+
+
 def rates(function: Callable[[Sequence[Any]], Sequence[Any]], at: Sequence[Any], columns: Sequence[int]) -> Rates:
-    """Rates of change of what a function of numbers gives, over the numbers of these indices, at a point."""
-    here = np.array(function(at), dtype=float)
+    """Rates of change of what a function of numbers gives, over the numbers of these indices, at a point.
 
-    def moved(k: int, step: float) -> np.ndarray:
-        there = list(at)
-        there[k] += step
-        return (np.array(function(there), dtype=float) - here) / step
+    The function is called with symbols (`models.block.operators`): once for all points.
+    """
 
-    def sides(step: float) -> tuple[np.ndarray, np.ndarray]:
-        empty = np.zeros((len(here), 0))
-        forward, backward = (np.column_stack([empty, *(moved(k, h) for k in columns)]) for h in (step, -step))
-        return forward, backward
+    steps = np.repeat([STEP, -STEP, 0.5 * STEP, -0.5 * STEP], len(columns))
+    given = list(at)
+    for j, k in enumerate(columns):
+        values = np.full(len(steps) + 1, at[k], dtype=float)
+        values[j : -1 : len(columns)] += steps[j :: len(columns)]
+        given[k] = Everywhere(values)
+    with np.errstate(all="ignore"):
+        found = [each.values if isinstance(each, Everywhere) else each for each in function(given)]
+    values = np.array([np.broadcast_to(each, len(steps) + 1) for each in found], dtype=float)
+    forward, backward, half_forward, half_backward = np.split((values[:, :-1] - values[:, -1:]) / steps, 4, axis=1)
+    jump = forward - backward
+    refined = 2.0 * (half_forward - half_backward) - jump
+    return Rates(forward, backward, np.where(np.abs(refined) < np.abs(jump), refined, jump))
 
-    forward, backward = sides(STEP)
-    found = Rates(forward, backward, jump=forward - backward)
-    if not found.has_kink.any():
-        return found
-    half_forward, half_backward = sides(0.5 * STEP)
-    return found._replace(jump=2.0 * (half_forward - half_backward) - found.jump)
+
+def reached(moves: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """Which of n things change with some of them (n), be it over others.
+
+    Args:
+        moves: (n, n), whether the thing of the row changes with that of the column.
+        by: these, which count themselves.
+    """
+    more = by | moves @ by
+    return by if (more == by).all() else reached(moves, more)

@@ -7,7 +7,6 @@ what does not act on T_ref, is left out. In a sample in which a message with the
 """
 
 from collections.abc import Sequence
-from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +14,7 @@ import numpy as np
 from ....models.controller import T_S
 from ....models.controller.supervision import FALLBACK
 from .averaged_messages import messages
-from .jacobians import NotLinear, Rates, like, names, numbers, rates
+from .jacobians import NotLinear, like, names, numbers, rates, reached
 from .linear_plant import MESSAGE, LinearPlant
 from .operating_point import Point
 
@@ -95,17 +94,21 @@ def differentiated(point: Point, places: Sequence[tuple[Any, Any, Any]]) -> list
 
     kinds = [lambda values, new=new: update(values, new) for new in ((0, 1) if point.wheel_speed_in_use else (0,))]
     at = [(kind, [*numbers(x), *u]) for x, u, _ in places for kind in kinds]
-    reached = _reached(at, inputs)
-    found = [rates(kind, here, [*reached, *inputs]) for kind, here in at]
-    T_ref = names(x).index("T_ref")
-    kept = _acting([_moves(each) for each in found], reached, T_ref)
-    columns = [k for k, index in enumerate([*reached, *inputs]) if index in kept or index in inputs]
-    labels = [*names(x), *fields]
+    found = [rates(kind, here, [*range(n), *inputs]) for kind, here in at]
+    moves = np.any([(each.forward != 0.0) | (each.backward != 0.0) for each in found], axis=0)
+    driven, T_ref = reached(moves[:, :n], moves[:, n:].any(axis=1)), np.array([name == "T_ref" for name in names(x)])
+    kept = np.flatnonzero(reached((moves[:, :n] & driven & driven[:, None]).T, T_ref & driven))
+    columns = [*kept, *range(n, n + len(inputs))]
+    labels = [*names(x), *signals]
     for each in found:
-        _require_straight(each, kept, columns, [labels[k] for k in (*reached, *inputs)], labels, point)
+        for row, column in np.argwhere(each.has_kink[np.ix_(kept, columns)]):
+            raise NotLinear(
+                f"{point.controller.name} is not linear in contact at {point.v:g} m/s and {point.T:g} N.m: "
+                f"{labels[kept[row]]} has a kink over {labels[columns[column]]}"
+            )
     matrices = [each.mean[np.ix_(kept, columns)] for each in found]
     samples = [Sample(matrix[:, : len(kept)], matrix[:, len(kept) :]) for matrix in matrices]
-    C, states = np.array([float(k == T_ref) for k in kept]), tuple(labels[k] for k in kept)
+    C, states = T_ref[kept].astype(float), tuple(labels[k] for k in kept)
     each = [samples[k * len(kinds) : (k + 1) * len(kinds)] for k in range(len(places))]
     return [LinearController(kinds[0], kinds[-1], C, signals, states) for kinds in each]
 
@@ -134,44 +137,3 @@ def settled(point: Point, drive: LinearPlant) -> tuple[Any, Any, Any]:
     if x.status == FALLBACK:
         raise NotLinear(f"{block.name} does not damp at {point.v:g} m/s and {point.T:g} N.m: it is in fallback")
     return x, signals(last)._replace(counter=(last - 1) // bus.cycle), p
-
-
-def _moves(found: Rates) -> np.ndarray:
-    """What changes with what."""
-    return (found.forward != 0.0) | (found.backward != 0.0)
-
-
-def _reached(at: Sequence[tuple[Any, Sequence[Any]]], inputs: Sequence[int]) -> list[int]:
-    """The numbers of the state that signals change, be it over others of them."""
-    found: set[int] = set()
-    new = list(inputs)
-    while new:
-        moving = chain.from_iterable(np.flatnonzero(_moves(rates(kind, here, new)).any(axis=1)) for kind, here in at)
-        new = sorted({int(k) for k in moving} - found)
-        found |= set(new)
-    return sorted(found)
-
-
-def _acting(moves: Sequence[np.ndarray], reached: Sequence[int], T_ref: int) -> list[int]:
-    """Those of them that act on T_ref, be it over others."""
-    found: set[int] = set()
-    new = {T_ref} & set(reached)
-    while new:
-        found |= new
-        over = np.concatenate([each[sorted(new)] for each in moves])[:, : len(reached)]
-        new = {reached[k] for k in np.flatnonzero(over.any(axis=0)).tolist()} - found
-    return sorted(found)
-
-
-def _require_straight(
-    found: Rates, kept: Sequence[int], columns: Sequence[int], over: Sequence[str], of: Sequence[str], point: Point
-) -> None:
-    """
-    Raises:
-        NotLinear: something has a kink.
-    """
-    for row, column in np.argwhere(found.has_kink[np.ix_(kept, columns)]):
-        raise NotLinear(
-            f"{point.controller.name} is not linear in contact at {point.v:g} m/s and {point.T:g} N.m: "
-            f"{of[kept[row]]} has a kink over {over[columns[column]]}"
-        )

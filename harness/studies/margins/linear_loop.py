@@ -17,7 +17,7 @@ from math import floor
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
+from scipy.linalg import expm, schur
 
 from ....models.controller import T_S
 from .averaged_messages import Messages, messages
@@ -85,26 +85,30 @@ class LinearLoop:
     def gain(self, f: np.ndarray) -> np.ndarray:
         """L at frequencies in Hz."""
         z = np.exp(2j * np.pi * np.asarray(f) * T_S)
-        over, seen, pushed = self._cycle
+        triangle, seen, pushed = self._cycle
         ahead = z[:, None] ** np.arange(self.cycle)
-        turned = z[:, None, None] ** self.cycle * np.eye(len(over)) - over
-        x = np.linalg.solve(turned, (ahead[:, ::-1] @ pushed)[..., None])[..., 0]
-        answers = pushed @ self.C
-        T_ref = x @ seen.T
+        turned = z**self.cycle
+        x = (ahead[:, ::-1] @ pushed).T
+        for k in range(len(x) - 1, -1, -1):  # at all frequencies
+            x[k] = (x[k] + triangle[k, k + 1 :] @ x[k + 1 :]) / (turned - triangle[k, k])
+        answers = pushed @ seen[0]
+        T_ref = (seen @ x).T
         for k in range(1, self.cycle):
             T_ref[:, k] += ahead[:, :k] @ answers[k - 1 :: -1]
         return -np.mean(T_ref / ahead, axis=1)
 
     @cached_property
     def _cycle(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of a cycle, which begins with a message: A over the whole of it; in each sample k the row that gives T_ref(k)
-        from the state at its begin, and what is left of r(0) after k + 1 samples without a message."""
+        """Of a cycle, which begins with a message, in coordinates in which A over the whole of it is a triangle
+        (complex Schur form): that; in each sample k the row that gives T_ref(k) from the state at its begin, and what
+        is left of r(0) after k + 1 samples without a message."""
         seen, over, pushed = [self.C], self.message, [self.B]
         for _ in range(1, self.cycle):
             seen.append(self.C @ over)
             over = self.quiet @ over
             pushed.append(self.quiet @ pushed[-1])
-        return over, np.array(seen), np.array(pushed)
+        triangle, turn, *_ = schur(over, output="complex")
+        return triangle, np.array(seen) @ turn, np.array(pushed) @ turn.conj()
 
 
 def linear_loop(point: Point) -> LinearLoop:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ....models.block.types import ContinuousBlock
-from .jacobians import like, numbers, rates
+from .jacobians import like, numbers, rates, reached
 from .operating_point import CAN, MOTOR, Point
 
 NOISELESS = {"sigma_T": 0.0, "sigma_omega": 0.0, "q_omega": 0.0}
@@ -124,9 +124,5 @@ def in_contact_and_gap(point: Point) -> tuple[LinearPlant, LinearPlant]:
 
 def _coupled(AB: np.ndarray, C: np.ndarray) -> np.ndarray:
     """The states that the input changes, be it over others, and that the outputs show, be it over others."""
-    n = len(AB)
-    moves = AB[:, :n] != 0.0
-    reached, shown = AB[:, n] != 0.0, (C != 0.0).any(axis=0)
-    for _ in range(n):
-        reached, shown = reached | moves @ reached, shown | shown @ moves
-    return np.flatnonzero(reached & shown)
+    moves, n = AB != 0.0, len(AB)
+    return np.flatnonzero(reached(moves[:, :n], moves[:, n]) & reached(moves[:, :n].T, (C != 0.0).any(axis=0)))

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import ceil, floor, inf, isnan, pi, sqrt
+from math import ceil, floor, inf, isnan, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from driveline.harness.studies.margins.linear_plant import in_contact_and_gap
 from driveline.harness.studies.margins.margins import FREQUENCIES, margins
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
-from driveline.models.block.operators import clip
+from driveline.models.block.operators import clip, sqrt
 from driveline.models.block.types import SampledBlock
 from driveline.models.controller import T_S
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
