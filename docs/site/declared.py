@@ -59,11 +59,11 @@ def _after(row: Cause) -> str:
 def check_rules() -> str:
     """What `driveline check` looks at."""
     rows = [
-        (f"`{rule.name}`", rule.severity.value, rule.clause.fmi2 or "", rule.clause.fmi3 or "", rule.title)
+        (f"`{rule.name}`", rule.severity.value, rule.clause.fmi2 or "", rule.clause.fmi3 or "", rule.title, rule.others)
         for rule in check.RULES
     ]
-    headings = ("rule", "severity", "FMI 2.0", "FMI 3.0", "what an FMU does that keeps it")
-    return markdown_table(headings, rows, labels=5)
+    headings = ("rule", "severity", "FMI 2.0", "FMI 3.0", "what an FMU does that keeps it", "also known to")
+    return markdown_table(headings, rows, labels=6)
 
 
 def legal_hosts() -> str:

@@ -120,5 +120,5 @@ def _of_states(block: ContinuousBlock) -> dict[str, Dependencies]:
 
 def _of_samples(fmu: Fmu, kind: BuildKind) -> dict[str, Dependencies]:
     sent = dict.fromkeys(outputs(fmu.block) if kind.has_terminal else (), frozenset[str]())
-    clocks = {name: on for name, on in sent.items() if name.endswith("Clock")}  # what is clocked has no initial value
-    return {"Output": output_dependencies(fmu.block) | sent, "InitialUnknown": initial_dependencies(fmu.block) | clocks}
+    # clocks and what is clocked have no initial value
+    return {"Output": output_dependencies(fmu.block) | sent, "InitialUnknown": initial_dependencies(fmu.block)}

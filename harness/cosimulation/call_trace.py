@@ -53,6 +53,8 @@ FUNCTIONS = (
     *(f"fmi3Get{what}" for what in ("ContinuousStateDerivatives", "EventIndicators", "ContinuousStates")),
     "fmi3GetNominalsOfContinuousStates",
     *("fmi3EnterStepMode", "fmi3GetIntervalDecimal"),
+    *("fmi2GetVersion", "fmi2GetTypesPlatform", "fmi2GetDirectionalDerivative"),
+    *("fmi3GetVersion", "fmi3GetDirectionalDerivative", "fmi3GetAdjointDerivative"),
 )
 """What is called, numbered from 1."""
 

@@ -86,16 +86,13 @@ def _parsed(text: bytes, path: Path, kinds: Sequence[str]) -> ModelDescription:
     return made
 
 
-def attributes(path: Path, limits: Limits, where: str) -> Iterator[dict[str, str]]:
-    """The attributes as they stand in the model description of an FMU, without what is true by default.
-
-    Args:
-        where: path of the elements, as `ElementTree` takes it.
+def document_root(path: Path, limits: Limits) -> Element:
+    """The model description of an FMU as it stands there.
 
     Raises:
         WiringError: there is none that can be read.
     """
-    return (element.attrib for element in _kept_root(described(path, limits), path).iterfind(where))
+    return _kept_root(described(path, limits), path)
 
 
 def _root(text: bytes, path: Path) -> Element:

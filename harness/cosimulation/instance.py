@@ -1,5 +1,6 @@
 """An FMU at work: loaded, instantiated, and afterwards gone without a trace."""
 
+import re
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -86,15 +87,39 @@ _loading = Lock()
 """fmpy changes the working directory of the process while it loads a binary, so one thread does at a time."""
 
 
+class _Absent:
+    """A function that a binary does not have; only a call of it fails."""
+
+    def __init__(self, name: str) -> None:
+        self.name, self.restype = name, None
+
+    def __call__(self, *_: Any) -> None:
+        raise AttributeError(f"its binary has no function {self.name}")
+
+
 class _Traced:
-    """What fmpy makes of an FMU, before its class: notes each call, and takes a status that FMI does not know for a
-    refusal."""
+    """What fmpy makes of an FMU, before its class: notes each call, takes a status that FMI does not know for a
+    refusal, and does without functions that nobody calls.
+
+    Attributes:
+        missing: functions of the standard that its binary does not have.
+    """
+
+    missing: Sequence[str] = ()
+    dll: Any
 
     def __init__(self, number: int, **arguments: Any) -> None:
         note(number, "loading its binary")
         self.number = number
         with _loading:
             super().__init__(**arguments)
+
+    def _loadFunctions(self) -> None:
+        functions = [name for name in dir(type(self)) if re.fullmatch("fmi[23][A-Z].*", name)]
+        self.missing = [name for name in functions if not hasattr(self.dll, name)]
+        for name in self.missing:
+            setattr(self.dll, name, _Absent(name))
+        cast(Any, super())._loadFunctions()
 
     def _call(self, fname: str, *args: Any) -> Any:
         note(self.number, fname, args[1] if fname in ("fmi2DoStep", "fmi3DoStep") else AT_START)
@@ -232,7 +257,13 @@ class Instance:
         self._log.clear()
 
     def function(self, name: str) -> Callable[..., int]:
-        """The bare function of the shared library: its arguments must be ctypes objects."""
+        """The bare function of the shared library: its arguments must be ctypes objects.
+
+        Raises:
+            SimulationError: the binary does not have it.
+        """
+        if name in self.slave.missing:
+            raise SimulationError(f"{self.label}: its binary has no function {name}")
         return self.slave.dll[name]
 
     @property
@@ -314,14 +345,14 @@ TRACED: dict[tuple[int, bool], type[Slave]] = {
 
 @contextmanager
 def instantiated(
-    name: str, fmu: Unpacked, number: int = 0, exchanging: bool = False, events: bool = False
+    name: str, fmu: Unpacked, number: int = 0, exchanging: bool = False, **options: Any
 ) -> Iterator[Instance]:
     """The FMU as an instance of that name, freed at the end.
 
     Args:
         number: in its loop.
         exchanging: for model exchange; else for co-simulation.
-        events: whether the host enters event mode in co-simulation, which FMI 3.0 has.
+        options: of fmi3InstantiateCoSimulation, by the names that they have there.
 
     Raises:
         InstantiationError: it cannot be loaded or instantiated.
@@ -329,7 +360,7 @@ def instantiated(
     key = next(_keys)
     _logs[key] = deque(maxlen=MESSAGES_KEPT)
     try:
-        instance = _instantiate(name, fmu, key, number, exchanging, events)
+        instance = _instantiate(name, fmu, key, number, exchanging, options)
         try:
             yield instance
         finally:
@@ -340,7 +371,9 @@ def instantiated(
         del _logs[key]
 
 
-def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bool, events: bool) -> Instance:
+def _instantiate(
+    name: str, fmu: Unpacked, key: int, number: int, exchanging: bool, options: Mapping[str, Any]
+) -> Instance:
     interface = fmu.interface
     exchange = interface.description.modelExchange
     try:
@@ -353,8 +386,7 @@ def _instantiate(name: str, fmu: Unpacked, key: int, number: int, exchanging: bo
             instanceName=name,
         )
         if isinstance(slave, _OfFMI3):
-            with_events = {"eventModeUsed": True} if events else {}
-            slave.instantiate(loggingOn=True, logMessage=partial(_log_of_fmi3, key), **with_events)
+            slave.instantiate(loggingOn=True, logMessage=partial(_log_of_fmi3, key), **options)
         else:
             slave.instantiate(callbacks=_callbacks(key), loggingOn=True)
     except Exception as error:  # fmpy raises bare exceptions

@@ -27,7 +27,7 @@ def foreign_fmu(
         compiler = host_compiler()
     library = path.with_suffix(fmpy.sharedLibraryExtension)
     nothing = dict.fromkeys(
-        re.findall(r"\bIN_\w+", "".join(path.read_text() for path in source.parent.glob("*.c"))), ""
+        re.findall(r"\bIN_\w+", "".join(path.read_text() for path in source.parent.glob("*.[ch]"))), ""
     )
     macros = [f"-D{macro}={code}" for macro, code in {**nothing, **does}.items()]
     subprocess.run([compiler, "-w", "-shared", "-fPIC", *macros, source, "-o", library, *libraries], check=True)

@@ -15,6 +15,8 @@ from ...cosimulation.unpacked_fmu import Unpacked, unpacked
 from .archive_rules import ARCHIVE_RULES, REFUSING_RULES, Archive
 from .behaviour_rules import BEHAVIOUR_RULES, QUICK_RULES
 from .binary_rules import BINARY_RULES, KIND, PLATFORM
+from .claim_rules import CLAIM_RULES, EXCHANGE_CLAIM_RULES, STEPPING_CLAIM_RULES
+from .contents_rules import CONTENTS_RULES
 from .description_rules import DESCRIPTION_RULES
 from .exchange_rules import EXCHANGE_RULES, QUICK_EXCHANGE_RULES
 from .rule import Clause, Rule, Severity, Verdict
@@ -22,8 +24,9 @@ from .rule import Clause, Rule, Severity, Verdict
 READABLE = Rule("readable", Severity.ERROR, "it is an FMU of FMI 2.0 or 3.0", Clause("2.2.1", "2.4.1"))
 
 RULES = (
-    *(READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES),
+    *(READABLE, *REFUSING_RULES, *ARCHIVE_RULES, *DESCRIPTION_RULES, *CONTENTS_RULES),
     *(KIND, PLATFORM, *BINARY_RULES, *BEHAVIOUR_RULES, *EXCHANGE_RULES),
+    *(*CLAIM_RULES, *STEPPING_CLAIM_RULES, *EXCHANGE_CLAIM_RULES),
 )
 
 FIRST = {BEHAVIOUR_RULES[0].name, EXCHANGE_RULES[0].name}
@@ -70,19 +73,29 @@ def _verdicts(path: Path, limits: Limits, quick: bool, ignored: Collection[str])
         yield READABLE.verdict([str(error)])
         return
     yield READABLE.verdict([])
-    yield from (rule.judge(interface) for rule in kept(DESCRIPTION_RULES))
-    stepping = QUICK_RULES if quick else BEHAVIOUR_RULES
-    exchanging = QUICK_EXCHANGE_RULES if quick else EXCHANGE_RULES
-    description = interface.description
+    yield from (rule.judge(interface) for rule in kept((*DESCRIPTION_RULES, *CONTENTS_RULES)))
     kind = KIND.judge(interface)
-    steps = description.coSimulation and not kind.problems
-    tried = [*BINARY_RULES, *(stepping if steps else ()), *(exchanging if description.modelExchange else ())]
+    tried = [*BINARY_RULES, *_behaviours(interface, steps=not kind.problems, quick=quick)]
     platform = PLATFORM.judge(interface)
     yield from (verdict for verdict in (kind, platform) if verdict.rule not in ignored)
     if platform.problems:
         yield from (rule.verdict([], tried=False) for rule in kept(tried))
     else:
         yield from _behaviour(interface, list(kept(tried)), limits)
+
+
+def _behaviours(interface: Interface, steps: bool, quick: bool) -> Iterator[Rule]:
+    """The rules for an FMU of its kinds; those of what it claims come after it has run."""
+    description = interface.description
+    steps, exchanges = steps and description.coSimulation is not None, description.modelExchange is not None
+    if steps:
+        yield from QUICK_RULES if quick else BEHAVIOUR_RULES
+    if exchanges:
+        yield from QUICK_EXCHANGE_RULES if quick else EXCHANGE_RULES
+    if not quick:
+        yield from CLAIM_RULES if steps or exchanges else ()
+        yield from STEPPING_CLAIM_RULES if steps else ()
+        yield from EXCHANGE_CLAIM_RULES if exchanges else ()
 
 
 def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> Iterator[Verdict]:

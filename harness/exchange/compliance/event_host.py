@@ -120,6 +120,6 @@ class EventHost(Host):
 def hosted(fmu: Unpacked, name: str = "checked") -> Iterator[Host]:
     """In event mode if the FMU has clocks."""
     events = has_clocks(fmu.interface.description)
-    with instantiated(name, fmu, events=events) as instance:
+    with instantiated(name, fmu, **({"eventModeUsed": True} if events else {})) as instance:
         yield EventHost(instance) if events else Host(instance)
         instance.call("terminate")

@@ -1,6 +1,6 @@
 """What integrates an FMU for the rules of model exchange: CVode, as fmpy has it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from ctypes import c_double
 from math import inf, sin
@@ -104,6 +104,9 @@ class ExchangeHost:
 
     def states(self) -> list[float]:
         return self._numbers("getContinuousStates", self.sizes[0])
+
+    def set_states(self, values: Sequence[float]) -> None:
+        self.instance.call("setContinuousStates", (c_double * self.sizes[0])(*values), self.sizes[0])
 
     def rates(self) -> list[float]:
         return self._numbers("getDerivatives", self.sizes[0])

@@ -48,7 +48,7 @@ def _not_finite(host: ExchangeHost, points: list[Point]) -> Iterator[str]:
 EXCHANGE_RULES = Rules()
 
 
-@EXCHANGE_RULES.rule("exchange-runs", Severity.ERROR, RUNS, INTEGRATED)
+@EXCHANGE_RULES.rule("exchange-runs", Severity.ERROR, RUNS, INTEGRATED, others="FMUChecker")
 def default_experiment(fmu: Unpacked, share: float = 1.0) -> Iterator[str]:
     """Integrates the default experiment; an FMU may end it (terminateSimulation)."""
     with integrated(fmu) as host:

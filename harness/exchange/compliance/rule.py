@@ -62,6 +62,7 @@ class Rule:
         name: by which it can be ignored.
         title: what an FMU does that keeps it.
         clause: of the standard.
+        others: checkers that know it too, of fmpy, FMUChecker and VDMCheck.
         problems: lists what breaks it; nothing for a rule that is judged elsewhere.
     """
 
@@ -70,6 +71,7 @@ class Rule:
     title: str
     clause: Clause = OURS
     problems: Problems = lambda *_: ()
+    others: str = ""
 
     def judge(self, *subject: Any) -> Verdict:
         """What breaks it; one thing may be that the FMU cannot be read or refuses a call.
@@ -93,11 +95,13 @@ class Rule:
 class Rules(list[Rule]):
     """Rules for one subject, in the order in which they stand there."""
 
-    def rule(self, name: str, severity: Severity, title: str, clause: Clause = OURS) -> Callable[[Problems], Problems]:
+    def rule(
+        self, name: str, severity: Severity, title: str, clause: Clause = OURS, others: str = ""
+    ) -> Callable[[Problems], Problems]:
         """What lists the problems of a rule becomes one of these."""
 
         def enter(problems: Problems) -> Problems:
-            self.append(Rule(name, severity, title, clause, problems))
+            self.append(Rule(name, severity, title, clause, problems, others))
             return problems
 
         return enter
