@@ -64,6 +64,7 @@ class Input(NamedTuple):
     omega_2_sent: Annotated[float, Real("rad/s", "speed of the driven wheels in the message, motor side")] = 0.0
     valid_sent: Annotated[bool, Boolean("flag of the message")] = False
     counter_sent: Annotated[int, Integer("counter of the message")] = 0
+    alive_sent: Annotated[int, Integer("counter of the motor's frames, 0 if they are not counted")] = 0
 
 
 class Signals(NamedTuple):
@@ -74,6 +75,7 @@ class Signals(NamedTuple):
     omega_2_can: Annotated[float, Real("rad/s", "received speed of the driven wheels, motor side")]
     valid: Annotated[bool, Boolean("the received wheel speed is above its minimum")]
     counter: Annotated[float, Integer("one more with every message that arrives")]
+    alive: Annotated[float, Integer("one more with every frame of the motor, 0 if they are not counted")]
 
 
 class Fault(NamedTuple):
@@ -95,6 +97,7 @@ class Sent(NamedTuple):
     torque: Annotated[float, Real("N.m", "of the motor")]
     valid: Annotated[bool, Boolean("flag of the message")]
     counter: Annotated[int, Integer("counter of the message")]
+    alive: Annotated[int, Integer("counter of the motor's frames")]
 
 
 class Past(NamedTuple):
@@ -156,8 +159,8 @@ def _late_one(p: Parameters) -> Fault:
 
 
 def _sent(u: Input, fault: Fault) -> Sent:
-    speed, torque, wheel, valid, counter = u
-    return Sent(where(fault.signal == WHEEL_SPEED, wheel, speed), torque, valid, counter)
+    speed, torque, wheel, *others = u
+    return Sent(where(fault.signal == WHEEL_SPEED, wheel, speed), torque, *others)
 
 
 def is_of(fault: Fault, signal: int) -> bool:
@@ -190,6 +193,7 @@ def delivered(y: Signals, u: Input, late: Sent, last: Sent, fault: Fault, sample
         omega_2_can=where(message, old.speed, y.omega_2_can),
         valid=where(whole, old.valid, y.valid),
         counter=where(whole, old.counter, y.counter),
+        alive=where(logical_and(fails, fault.signal == FRAME), old.alive, y.alive),
     )
 
 
@@ -210,6 +214,7 @@ def altered(y: Signals, fault: Fault, sample: float, p: Parameters) -> Signals:
         omega_2_can=value(y.omega_2_can, fault.signal == WHEEL_SPEED),
         valid=where(logical_and(now, turned), logical_not(y.valid), y.valid),
         counter=where(jumps, floor(COUNTERS * uniform(p.seed, fault.stream + 4.0, sample)), y.counter),
+        alive=y.alive,
     )
 
 

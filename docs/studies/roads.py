@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from driveline.fmus.catalogue import SIGNAL_FAULTS
-from driveline.harness.cosimulation.experiment import Experiment
+from driveline.harness.cosimulation.experiment import Experiment, Source
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.loop.built_fmus import built, made_if_missing
 from driveline.harness.loop.places import BUILD, COMPARATORS, NATIVE, T_S
@@ -30,7 +30,7 @@ from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import signals, start
-from driveline.harness.studies.faults.fault_injection import with_faults
+from driveline.harness.studies.faults.fault_injection import COUNTED, with_faults
 from driveline.models.controller.supervision import FALLBACK
 from driveline.models.signal_faults import FRAME, LATE, MOTOR_SPEED, MOTOR_TORQUE
 
@@ -55,6 +55,9 @@ HOLDING = 2400.0
 """Brakes that hold the car on a grade, N.m."""
 
 
+NOTHING_TOLD: Mapping[str, Source] = {}
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """A run of the loop.
@@ -65,6 +68,7 @@ class Run:
         begin: of the errors of the frame in s; None: there are none.
         errors: parameters of SignalFaults, or of PeriodicErrors where they have a frequency.
         plant: parameters of the plant.
+        told: further inputs, by name: what some buses tell.
     """
 
     group: str
@@ -73,6 +77,7 @@ class Run:
     plant: Mapping[str, float] = field(default_factory=dict)
     begin: float | None = None
     errors: Mapping[str, float] = field(default_factory=dict)
+    told: Mapping[str, Source] = field(default_factory=lambda: NOTHING_TOLD)
     seed: int = 1
 
     def __str__(self) -> str:
@@ -119,14 +124,16 @@ def tip_in(v_0: float, T_driver: float) -> Manoeuvre:
     return Manoeuvre(f"{T_driver:g} N.m at {v_0:g} m/s", "", 6.0, v_0, course)
 
 
-def pulses(frequency: float, T_brake: float, v_0: float = 22.0) -> Manoeuvre:
-    """Brakes as ABS lets them go: half of each period."""
+def pulses(frequency: float, T_brake: float, v_0: float = 22.0, T_driver: float = 0.0) -> Manoeuvre:
+    """Brakes as ABS lets them go: half of each period; the motor brakes too with T_driver."""
     points = [(1.0, 0.0), (1.0, 200.0)]
     for t in np.arange(1.0, 4.0, 1.0 / frequency):
         ends = t + 0.5 / frequency
         points += [(t, 200.0), (t, 200.0 + T_brake), (ends, 200.0 + T_brake), (ends, 200.0)]
     course = lines(*points, (4.5, 0.0))
-    return Manoeuvre(f"{T_brake:g} N.m at {frequency:g} Hz", "", 6.0, v_0, lines((0.0, 0.0)), course)
+    demand = lines((1.0, 0.0), (1.05, T_driver), (4.5, T_driver), (4.6, 0.0)) if T_driver else lines((0.0, 0.0))
+    regenerates = f", {T_driver:g} N.m" if T_driver else ""
+    return Manoeuvre(f"{T_brake:g} N.m at {frequency:g} Hz{regenerates}", "", 6.0, v_0, demand, course)
 
 
 def hill_start(name: str, grade: float, T_driver: Signal) -> Manoeuvre:
@@ -154,6 +161,20 @@ def with_abs() -> Iterator[Run]:
         yield Run(f"ABS, mu {mu:g}", pulses(frequency, T_brake), 1.0, {"mu": mu})
 
 
+def active(t: np.ndarray) -> np.ndarray:
+    """Whether ABS is, as it tells: from the second period of 50 Hz on in which the brakes are pulsed."""
+    return (t >= 1.02) & (t < 4.2)
+
+
+def with_abs_and_regeneration() -> Iterator[Run]:
+    for name, told in (("", NOTHING_TOLD), (", told", {"controller.slip_control": active})):
+        for mu, frequency, T_brake, T_driver in product(
+            (0.2, 0.5, 1.0), (4.0, 5.0, 8.0, 12.0), (500.0, 1900.0, 4000.0), (-20.0, -50.0, -80.0)
+        ):
+            course = pulses(frequency, T_brake, T_driver=T_driver)
+            yield Run(f"ABS with regeneration{name}, mu {mu:g}", course, 1.0, {"mu": mu}, told=told)
+
+
 DRIVES = (
     MANOEUVRES["launch"],
     hill_start("100 N.m", 0.12, lines((1.0, 0.0), (1.1, 100.0))),
@@ -162,13 +183,29 @@ DRIVES = (
 )
 
 
+def with_late_signals(what: str, signal: int, late: float, told: Mapping[str, Source] = NOTHING_TOLD) -> Iterator[Run]:
+    """Signals of motor control come `late` s late from the start or from 1.1 s on."""
+    for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
+        end = manoeuvre.duration
+        given = {"kind_1": LATE, "signal_1": signal, "begin_1": begin, "end_1": end, "size_1": late}
+        yield Run(f"{what} {1e3 * late:.0f} ms late", manoeuvre, max(1.0, begin + AFTER), {}, begin, given, told)
+
+
+def count(t: np.ndarray) -> np.ndarray:
+    """Of the frames that motor control has sent, one in each sample of the controller."""
+    return 1.0 + np.floor(t / T_S + 0.5)
+
+
+def with_counted_frames() -> Iterator[Run]:
+    for what, told in (("frame", NOTHING_TOLD), ("counted frame", {COUNTED: count})):
+        for late in (0.01, 0.02, 0.022, 0.03, 0.04, 0.052, 0.07, 0.1):
+            yield from with_late_signals(what, FRAME, late, told)
+
+
 def with_wrong_frames() -> Iterator[Run]:
     for late in (0.01, 0.02, 0.03, 0.04, 0.052, 0.062, 0.08, 0.1):
         for what, signal in (("speed", MOTOR_SPEED), ("torque", MOTOR_TORQUE), ("frame", FRAME)):
-            for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
-                end = manoeuvre.duration
-                given = {"kind_1": LATE, "signal_1": signal, "begin_1": begin, "end_1": end, "size_1": late}
-                yield Run(f"{what} {1e3 * late:.0f} ms late", manoeuvre, max(1.0, begin + AFTER), {}, begin, given)
+            yield from with_late_signals(what, signal, late)
     for frequency in (2.0, 4.0, 6.0, 8.0, 10.0, 14.0):
         for what, errors in (("speed off by 7 rad/s", {"e_omega_1": 7.0}), ("torque off by 40 N.m", {"e_T_mot": 40.0})):
             for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
@@ -176,7 +213,10 @@ def with_wrong_frames() -> Iterator[Run]:
                 yield Run(f"{what}, {frequency:g} Hz", manoeuvre, max(1.0, begin + AFTER), {}, begin, given)
 
 
-STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames}
+TOLD = {"regeneration": with_abs_and_regeneration, "counted": with_counted_frames}
+"""Where it is shown what is gained by what only the car can tell."""
+
+STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames, **TOLD}
 
 
 INJECTORS = {False: SIGNAL_FAULTS, True: periodic_errors.FMU}
@@ -189,7 +229,7 @@ def gear_torque(each: Run, settings: Settings, injectors: Mapping[bool, Path]) -
     parameters = start(each.manoeuvre, each.seed) | dict(settings.parameters)
     parameters |= {f"plant.{name}": value for name, value in each.plant.items()}
     parameters |= {f"faults.{name}": value for name, value in each.errors.items()}
-    inputs = signals(each.manoeuvre, settings.control, settings.step_size)
+    inputs = signals(each.manoeuvre, settings.control, settings.step_size) | dict(each.told)
     rows = at_samples(run(system, Experiment(each.manoeuvre.duration, inputs=inputs, parameters=parameters)))
     fallback = T_S * float(np.count_nonzero(rows["controller.status"] == FALLBACK))
     return rows["plant.T_gear"][rows["time"] >= each.seen_from], fallback
@@ -243,7 +283,7 @@ CONTROLLERS = (OURS, *(name for name in COMPARATORS if name != "NoDamping"))
 
 def controllers_table(found: Mapping[tuple[str, str], Sequence[Ratios]]) -> Table:
     """Every controller on roads without grip and under ABS."""
-    rows = {f"{study}, {name}": numbers(of) for (study, name), of in found.items() if study != "frames"}
+    rows = {f"{study}, {name}": numbers(of) for (study, name), of in found.items() if study in ("grip", "abs")}
     return Table("runs, controller", (*NUMBERS, *OVER), rows)
 
 
@@ -271,7 +311,7 @@ def runs_table(runs: Sequence[Run], found: Sequence[Ratios]) -> Table:
 
 def sentinels() -> list[Run]:
     """One run of each kind."""
-    return [next(iter(made())) for made in STUDIES.values()]
+    return [next(iter(made())) for study, made in STUDIES.items() if study not in TOLD]
 
 
 def measure() -> Measured:
@@ -279,6 +319,7 @@ def measure() -> Measured:
     found = {
         (study, controller): measured(runs[study], controller, f"{controller}, {study}")
         for study, controller in product(STUDIES, CONTROLLERS)
+        if study not in TOLD or controller == OURS
     }
     slippery = [*runs["grip"], *runs["abs"]]
     return Measured(
@@ -286,6 +327,8 @@ def measure() -> Measured:
             "controllers": controllers_table(found),
             "groups": groups_table(slippery, [*found["grip", OURS], *found["abs", OURS]]),
             "frames": frames_table(runs["frames"], {name: found["frames", name] for name in CONTROLLERS}),
+            "regeneration": groups_table(runs["regeneration"], found["regeneration", OURS]),
+            "counted": frames_table(runs["counted"], {OURS: found["counted", OURS]}),
             "runs": runs_table(slippery, [*found["grip", OURS], *found["abs", OURS]])._replace(note="With ours."),
             "late": runs_table(sentinels()[2:], measured(sentinels()[2:], OURS, "frames")),
         }

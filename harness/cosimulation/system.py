@@ -66,6 +66,7 @@ class System:
         limits: of the others.
         any_value: instances that put out NaN on purpose; with all others it ends the run.
         optional: variables that an FMU may lack, and the value that an input or parameter then stands for (None: any).
+        offered: connections that are made where both FMUs have their end.
     """
 
     instances: Mapping[str, Path]
@@ -75,6 +76,7 @@ class System:
     outputs: tuple[Port, ...] = ()
     mapping: Mapping[str, str] = field(default_factory=dict[str, str])
     optional: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
+    offered: tuple[Connection, ...] = ()
     own: frozenset[str] = frozenset()
     limits: Limits = USUAL_LIMITS
     any_value: frozenset[str] = frozenset()

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from math import inf
 from typing import NamedTuple
 
@@ -20,7 +21,7 @@ class Fit(NamedTuple):
     """A system whose FMUs fit together.
 
     Attributes:
-        system: without what is absent.
+        system: without what is absent, with what is offered.
         interfaces: of the instances by their names, mapped.
         absent: optional inputs and parameters that the FMUs do not have, and what they then stand for.
     """
@@ -57,7 +58,9 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
         interfaces[name].any_value = True
     problems = list(mapping.apply(system, interfaces))
     absent = {name: value for name, value in system.optional.items() if _is_absent(name, interfaces)}
-    found = Fit(system.without(absent), interfaces, absent)
+    made = [each for each in system.offered if not any(_is_absent(end, interfaces) for end in each[:2])]
+    system = replace(system.without(absent), connections=(*system.without(absent).connections, *made))
+    found = Fit(system, interfaces, absent)
     problems += _duplicates(interfaces)
     require([*problems, *_misfits(found.system, interfaces), *unknown(found, inputs, parameters)])
     return found

@@ -45,6 +45,13 @@ CONNECTIONS = (
     Connection("can.counter", "controller.counter"),
 )
 
+OFFERED = (
+    Connection("motor.alive", "controller.alive"),
+    Connection("can.direction", "controller.direction"),
+    Connection("can.slip_control", "controller.slip_control"),
+)
+"""What some buses tell, and ours does not."""
+
 TRUTH = (
     Connection("plant.omega_1", "controller.omega_1", "rad/s"),
     Connection("plant.omega_2", "controller.omega_2", "rad/s"),

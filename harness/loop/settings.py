@@ -20,6 +20,7 @@ from .places import (
     INPUTS,
     NATIVE,
     NO_DAMPING,
+    OFFERED,
     OPTIONAL,
     OUTPUTS,
     PARAMETERS,
@@ -191,6 +192,7 @@ def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes])
         outputs=OUTPUTS,
         mapping=made.mapping,
         optional=OPTIONAL,
+        offered=OFFERED,
         own=frozenset(place for place, block in made.blocks.items() if str(block) in PLACES[place]),
         limits=made.limits,
     )

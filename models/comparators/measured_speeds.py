@@ -42,7 +42,7 @@ def restart(x: SpeedState, omega_1: float, T_mot: float, p: Parameters) -> Speed
     return SpeedState(omega_1, omega_1, T_mot, x.share)
 
 
-def take_motor_speed(x: SpeedState, omega_1: float, T_s: float, p: Parameters) -> SpeedState:
+def take_motor_speed(x: SpeedState, omega_1: float, slips: bool, T_s: float, p: Parameters) -> SpeedState:
     return x._replace(omega_1=omega_1)
 
 

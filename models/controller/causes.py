@@ -7,7 +7,7 @@ from ..block.declaration import Enumeration
 from ..block.operators import where
 
 NONE, SPEED_RANGE, SPEED_JUMP, SPEED_FROZEN, TORQUE_IMPLAUSIBLE = range(1, 6)
-WHEEL_CONTRADICTS, WRONG_DIRECTION, WRONG_LAUNCH, FEEDS = range(6, 10)
+WHEEL_CONTRADICTS, WRONG_DIRECTION, WRONG_LAUNCH, FEEDS, FRAME_LATE = range(6, 11)
 
 
 class Cause(NamedTuple):
@@ -28,7 +28,7 @@ class Cause(NamedTuple):
 
 
 FAILURES = (
-    Cause(SPEED_RANGE, "speed_range", "the motor speed is no number or beyond omega_max", "t_bad"),
+    Cause(SPEED_RANGE, "speed_range", "the motor speed is no number, or leaps beyond omega_max", "t_bad"),
     Cause(SPEED_JUMP, "speed_jump", "the motor speed leaps by more than jump, and no fast change goes on", "t_bad"),
     Cause(SPEED_FROZEN, "speed_frozen", "the motor speed stays the same while the model moves beyond frozen", "t_bad"),
     Cause(TORQUE_IMPLAUSIBLE, "torque_implausible", "the torque estimate is off by more than T_off and g_off", "t_bad"),
@@ -40,6 +40,7 @@ FAILURES = (
         "the motor sets off from rest against its torque, and turns on against it",
         heals="the same, once it turns the other way, or at rest",
     ),
+    Cause(FRAME_LATE, "frame_late", "the frame of motor control is older than t_bad, by its counter"),
 )
 """Lead to fallback. Where several are found, the first is the cause."""
 
@@ -70,5 +71,5 @@ FEEDING = Cause(
 OUTPUT = Enumeration(
     "Cause",
     "why there is no damping, or less",
-    (("none", "nothing is wrong"), *((row.word, row.finding) for row in (*FAILURES, FEEDING))),
+    (("none", "nothing is wrong"), *((row.word, row.finding) for row in sorted((*FAILURES, FEEDING)))),
 )

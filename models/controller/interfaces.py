@@ -47,8 +47,8 @@ class Estimator(Part, Protocol[S, P]):
         """State that has forgotten what it estimated, as at the start."""
         ...
 
-    def take_motor_speed(self, x: S, omega_1: float, T_s: float, p: P) -> S:
-        """State corrected by the measured motor speed."""
+    def take_motor_speed(self, x: S, omega_1: float, slips: bool, T_s: float, p: P) -> S:
+        """State corrected by the measured motor speed; `slips`: the car says that its wheels slip."""
         ...
 
     def take_wheel_speed(self, x: S, omega_2: float, T_s: float, p: P) -> S:

@@ -56,6 +56,7 @@ class Supervised(Generic[E, L]):
 
     def update(self, x: State[E, L], u: Input, p: Parameters) -> State[E, L]:
         """What was measured, whether it is trusted, what is added to the demand, and what is expected next."""
+        u = motor_signals.filled(x.motor, u, self.estimator.motion(x.estimator, p).omega_1)
         T_driver, T_mot = demand(u, p), motor_signals.torque(x.motor, u.T_mot_est, p)
         x = self.measured(x, u, T_driver, T_mot, p)
         trusted = trust.is_trusted(x.trust)
@@ -70,7 +71,8 @@ class Supervised(Generic[E, L]):
 
         level = faded(x.level, logical_and(u.enable, trusted), T_S, p.t_fade)
         share = level * standstill.remaining_damping(x.quiet, p)
-        swings = oscillation.update(x.swings, share * damping, T_driver - (x.T_ref - x.T_damp), trusted, T_S, p)
+        counts = logical_and(trusted, logical_not(u.slip_control))
+        swings = oscillation.update(x.swings, share * damping, T_driver - (x.T_ref - x.T_damp), counts, T_S, p)
         share = share * oscillation.share(swings)
         fading = level / maximum(x.level, T_S / p.t_fade) * x.T_damp
         added = limited(where(trusted, share * (damping + adding.landing), fading), T_driver, p)
@@ -106,7 +108,7 @@ class Supervised(Generic[E, L]):
         turned = side * omega_1 < -p.omega_still
         wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, side, T_S, p)
         found |= {
-            causes.WHEEL_CONTRADICTS: contradicts,
+            causes.WHEEL_CONTRADICTS: logical_and(contradicts, logical_not(u.slip_control)),
             causes.WRONG_DIRECTION: logical_and(turned, u.direction != 0),
             causes.WRONG_LAUNCH: logical_or(against, logical_and(turned, x.trust.cause == causes.WRONG_LAUNCH)),
         }
@@ -115,7 +117,7 @@ class Supervised(Generic[E, L]):
 
         rests = standstill.is_complete(quiet, p)
         begins = logical_or(rests, trust.is_healing(trusting, T_S))
-        e = self.estimator.take_motor_speed(x.estimator, omega_1, T_S, p)
+        e = self.estimator.take_motor_speed(x.estimator, omega_1, u.slip_control, T_S, p)
         e = branch(taken, lambda: self.estimator.take_wheel_speed(e, side * wheel.omega_2, T_S, p), lambda: e)
         e = self.estimated(e, u, p)
         omega_1, T_mot = where(rests, 0.0, omega_1), where(rests, 0.0, T_mot)

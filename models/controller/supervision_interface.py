@@ -30,6 +30,9 @@ class Parameters(NamedTuple):
     t_proof: Annotated[float, Real("s", "good motor signals for so long end the fallback", 0.01, 1.0)] = 0.15
     t_turn: Annotated[float, Real("s", "the same after the motor speed has changed its sign", 0.01, 10.0)] = 1.0
     t_stale: Annotated[float, Real("s", "no message for so long ends the mode with wheel speed", 0.01, 10.0)] = 0.1
+    T_frame: Annotated[float, Real("s", "from one frame of motor control to the next, by its counter", 1e-4, 0.1)] = (
+        0.002
+    )
     t_late: Annotated[float, Real("s", "time for which messages may tell what the motor speed was", 0.01, 1.0)] = 0.08
     t_move: Annotated[float, Real("s", "time for which an expected movement is remembered", 0.01, 10.0)] = 0.1
     t_forget: Annotated[float, Real("s", "time after which a half swing is forgotten", 0.01, 100.0)] = 0.5
@@ -37,7 +40,9 @@ class Parameters(NamedTuple):
     T_still: Annotated[float, Real("N.m", "largest demand at rest", 0.0, 20.0)] = 2.0
     omega_still: Annotated[float, Real("rad/s", "largest motor speed at rest", 0.0, 20.0)] = 3.0
     t_rest: Annotated[float, Real("s", "time below both after which the car is at rest", 0.0, 10.0)] = 0.3
-    omega_max: Annotated[float, Real("rad/s", "largest plausible speed", 10.0, 5000.0)] = 3000.0
+    omega_max: Annotated[float, Real("rad/s", "largest speed that need not be reached step by step", 10.0, 5000.0)] = (
+        3000.0
+    )
     q_omega: Annotated[float, Real("rad/s", "resolution of the measured motor speed", 0.0, 10.0)] = 0.1
     jump: Annotated[float, speed("largest jump of the motor speed in a sample")] = 1.25
     frozen: Annotated[float, speed("movement beside q_omega without which the motor speed is frozen")] = 0.15
@@ -62,3 +67,5 @@ class Input(NamedTuple):
     counter: Annotated[int, Integer("one more with every message that arrives")] = 0
     enable: Annotated[bool, Boolean("damping on")] = True
     direction: Annotated[int, Integer("of the car, if the bus tells it: 1 forwards, -1 backwards, 0 not known")] = 0
+    alive: Annotated[int, Integer("one more with every frame of motor control, if it is counted; 0 if not")] = 0
+    slip_control: Annotated[bool, Boolean("a traction or brake control is active, if the bus tells it")] = False

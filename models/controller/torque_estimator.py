@@ -118,10 +118,10 @@ def restart(x: EstimatorState, omega_1: float, T_mot: float, p: Parameters) -> E
     return x._replace(base=omega_1, estimate=at_rest_with(T_mot, p), late=omega_1, drift=0.0, slip=0.0)
 
 
-def take_motor_speed(x: EstimatorState, omega_1: float, T_s: float, p: AllParameters) -> EstimatorState:
+def take_motor_speed(x: EstimatorState, omega_1: float, slips: bool, T_s: float, p: AllParameters) -> EstimatorState:
     e = counted_from(omega_1 - x.base, x.estimate)
     drift = x.drift - T_s / p.t_drift * (e.omega_1 + x.drift)
-    slip = maximum(slipping(drift, e.T_l, T_s, p), x.slip - T_s / p.t_grip)
+    slip = where(slips, 1.0, maximum(slipping(drift, e.T_l, T_s, p), x.slip - T_s / p.t_grip))
     L, Ls = (p.L_omega_1, p.L_omega_2, p.L_phi, p.L_T_l), (p.Ls_omega_1, p.Ls_omega_2, p.Ls_phi, p.Ls_T_l)
     e = corrected(e, -e.omega_1, [a + slip * (b - a) for a, b in zip(L, Ls, strict=True)])
     x = x._replace(base=omega_1, estimate=e, drift=drift, slip=slip)

@@ -125,7 +125,7 @@ def test_the_gear_torque_that_it_estimates_is_washed_out() -> None:
     p, slow = paper_observer.BLOCK.Parameters(k_T=0.5), states[0].law.washout
     every = OURS.Parameters(**p._asdict() | LITERAL)
     for before, x, u in zip(states, states[1:], inputs, strict=False):
-        e = torque_estimator.take_motor_speed(before.estimator, u.omega_1_meas, T_S, every)
+        e = torque_estimator.take_motor_speed(before.estimator, u.omega_1_meas, False, T_S, every)
         if x.wheel.silence == 0.0:
             e = torque_estimator.take_wheel_speed(e, u.omega_2_can, T_S, every)
         fed_back = 0.5 * p.C * dead_zone(e.estimate.phi, p.phi_B)

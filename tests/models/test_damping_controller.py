@@ -104,7 +104,7 @@ def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None
     y, e = BLOCK.output(x, ROLLING, P), x.estimator.estimate
     assert (y.phi_hat, y.omega_2_hat) == (e.phi, x.estimator.base + e.omega_2)
     assert y.T_gear_hat == P.C * dead_zone(e.phi, P.phi_B)
-    seen = estimator.take_motor_speed(x.estimator, x.estimator.base + e.omega_1, T_S, P)
+    seen = estimator.take_motor_speed(x.estimator, x.estimator.base + e.omega_1, False, T_S, P)
     assert (seen.estimate.phi, seen.estimate.omega_1) == pytest.approx((e.phi, 0.0), abs=1e-12)
 
 
@@ -112,7 +112,7 @@ def test_the_estimate_shown_is_that_of_the_instant_at_which_it_appears() -> None
 
 
 def test_nothing_is_demanded_or_known_until_somebody_says_so() -> None:
-    assert Input() == (0.0, 0.0, 0.0, 0.0, False, 0, True, 0)
+    assert Input() == (0.0, 0.0, 0.0, 0.0, False, 0, True, 0, 0, False)
     x = BLOCK.start(Input(), P)
     assert (x.T_ref, x.status) == (0.0, WITHOUT_WHEEL_SPEED)
 

@@ -1,6 +1,6 @@
 """Fault injection: the loop with SignalFaults between sensors and controller, and the three runs of a case."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -34,8 +34,12 @@ PASSES = {
     "omega_2_can": "omega_2_sent",
     "valid": "valid_sent",
     "counter": "counter_sent",
+    "alive": "alive_sent",
 }
 """What the controller gets from SignalFaults, and what that gets in its place."""
+
+COUNTED = f"{INSTANCE}.alive_sent"
+"""The counter of the frames of motor control."""
 
 STATUS, T_DAMP = "controller.status", "controller.T_damp"
 
@@ -182,27 +186,33 @@ def _completed(run: np.ndarray) -> np.ndarray:
 
 
 def with_faults(system: System, injector: Path) -> System:
-    """The loop with SignalFaults, an FMU, between the sensors and the controller."""
-    connections: list[Connection] = []
-    for connection in system.connections:
-        name = connection.target.removeprefix("controller.")
-        if connection.target.startswith("controller.") and name in PASSES:
-            connections.append(connection._replace(target=f"{INSTANCE}.{PASSES[name]}"))
-            connections.append(connection._replace(source=f"{INSTANCE}.{name}"))
-        else:
-            connections.append(connection)
+    """The loop with SignalFaults, an FMU, between the sensors and the controller.
+
+    Frames of motor control are counted where a run gives the input COUNTED.
+    """
     instances = dict(system.instances)
     controller = instances.pop("controller")
     others = {name: instances.pop(name) for name in list(instances) if name != "motor"}
     return replace(
         system,
         instances={**instances, INSTANCE: injector, "controller": controller, **others},
-        connections=tuple(connections),
+        connections=tuple(_through_faults(system.connections)),
         outputs=(*system.outputs, *JUDGED),
+        offered=tuple(_through_faults(system.offered)),
         optional={**system.optional, STATUS: None, T_DAMP: None},
         own=system.own | {INSTANCE},
         any_value=frozenset({INSTANCE}),
     )
+
+
+def _through_faults(connections: Iterable[Connection]) -> Iterator[Connection]:
+    for connection in connections:
+        name = connection.target.removeprefix("controller.")
+        if connection.target.startswith("controller.") and name in PASSES:
+            yield connection._replace(target=f"{INSTANCE}.{PASSES[name]}")
+            yield connection._replace(source=f"{INSTANCE}.{name}")
+        else:
+            yield connection
 
 
 def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:

@@ -24,7 +24,7 @@ SETTLING = 0.5
 LAST_DIGIT = 1e-9
 """In rad/s; a motor speed that does not change by a digit is frozen."""
 
-NOT_MEASURED = ("T_driver", "valid", "counter", "enable", "direction")
+NOT_MEASURED = ("T_driver", "valid", "counter", "enable", "direction", "alive", "slip_control")
 """Inputs of a controller that carry no measurement."""
 
 

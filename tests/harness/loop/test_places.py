@@ -13,7 +13,8 @@ from driveline.harness.base.errors import WiringError
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.cosimulation.runs import run
-from driveline.harness.loop.places import CONNECTIONS, NO_DAMPING, OPTIONAL, PLACES, PLANTS
+from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.loop.places import CONNECTIONS, NO_DAMPING, OFFERED, OPTIONAL, PLACES, PLANTS
 from driveline.harness.loop.settings import chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, simulate, start
@@ -74,9 +75,10 @@ def test_our_fmus_have_all_that_is_optional_and_take_their_inputs_from_the_loop(
     for name in OPTIONAL:
         instance, _, variable = name.partition(".")
         assert variable in interfaces[instance].variables
-    fed = {connection.target for connection in CONNECTIONS} | {port.name for port in system.inputs}
+    assert len(fit(system).system.connections) == len(CONNECTIONS), "our bus tells no more"
+    fed = {connection.target for connection in (*CONNECTIONS, *OFFERED)} | {port.name for port in system.inputs}
     have = {f"{name}.{v.name}" for name, interface in interfaces.items() for v in interface.of_causality("input")}
-    assert have - fed == {"plant.T_load_rec", "controller.direction"}, "our bus tells no direction"
+    assert have - fed == {"plant.T_load_rec"}
 
 
 def test_a_controller_need_not_use_every_signal(both_built, relay, caplog):

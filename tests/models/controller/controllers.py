@@ -65,6 +65,8 @@ any_input = st.builds(
     valid=st.booleans(),
     counter=st.integers(-(2**31), 2**31 - 1),
     enable=st.booleans(),
+    alive=st.integers(-(2**31), 2**31 - 1),
+    slip_control=st.booleans(),
 )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import pytest
 
 from driveline.models.controller import motor_signals
-from driveline.models.controller.causes import SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
+from driveline.models.controller.causes import FRAME_LATE, SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
 from driveline.models.controller.motor_signals import MotorState
 from driveline.models.controller.supervision import Input, Parameters
 from driveline.models.controller.torque_loop import LoopState
@@ -64,8 +64,14 @@ def test_a_signal_that_is_no_number_is_bridged_by_what_is_expected() -> None:
 
 @each_side
 def test_a_motor_speed_is_plausible_up_to_omega_max(side: float) -> None:
-    for speed, used, found in ((500.0, 500.0, []), (above(500.0), 490.0, [SPEED_RANGE])):
-        assert updated(with_speed(side * speed), last(side * 490.0))[1:] == (side * used, found)
+    """But for one that gets there step by step, as wheels that spin take it along."""
+    for speed, before, used, found in (
+        (500.0, 459.0, 459.0, [SPEED_JUMP]),
+        (above(500.0), 459.0, 459.0, [SPEED_RANGE]),
+        (530.0, 490.0, 530.0, []),
+        (above(530.0), 490.0, 490.0, [SPEED_RANGE]),
+    ):
+        assert updated(with_speed(side * speed), last(side * before))[1:] == (side * used, found)
 
 
 @each_side
@@ -210,8 +216,47 @@ def test_a_frozen_motor_speed_stays_so_until_it_changes() -> None:
 
 
 def test_at_the_start_all_that_is_in_range_is_believed() -> None:
-    assert motor_signals.start(U, P) == MotorState(150.0, 150.0, 0.0, 0.0, LoopState(50.0, 0.0))
+    assert motor_signals.start(U, P) == MotorState(-1.0, 0.0, 150.0, 150.0, 0.0, 0.0, LoopState(50.0, 0.0))
     x = motor_signals.start(Input(omega_1_meas=math.nan, T_mot_est=300.0), P)
-    assert x == MotorState(0.0, 0.0, 0.0, 0.0, LoopState(0.0, 0.0))
+    assert x == MotorState(-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, LoopState(0.0, 0.0))
     for T_mot_est, T_mot in ((200.0, 200.0), (above(200.0), 0.0)):
         assert motor_signals.start(Input(T_mot_est=T_mot_est), P).loop.T_mot == T_mot, "twice T_max"
+
+
+def ages(counters: Iterable[int], p: Parameters = P, samples_of_frame: int = 1) -> list[float]:
+    """Of the frame with these counters in samples, from the second one on, to the hundredth."""
+    first, *others = counters
+    p = p._replace(T_frame=samples_of_frame * T_S)
+    x, found = motor_signals.start(U._replace(alive=first), p), []
+    for counter in others:
+        x, _, _ = motor_signals.update(x, U._replace(alive=counter), 150.0, True, T_S, p)
+        found.append(round(x.age / T_S, 2))
+    return found
+
+
+def test_a_frame_is_as_old_as_its_counter_is_behind_the_time() -> None:
+    assert ages([5, 5, 6, 7, 8]) == [0.0] * 4, "the sample of the start is made again"
+    assert ages([5, 5, 5, 5, 6, 7, 9, 11]) == [0.0, 1.0, 2.0, 2.0, 2.0, 1.0, 0.0], "late, and made up for"
+    assert ages([9, 9, 7, 8, 9]) == [0.0, 3.0, 3.0, 3.0], "as one that is late from now on"
+    assert ages([9, 9, 10, 1, 2]) == [0.0] * 4, "a second and more: counted anew"
+    assert ages([0, 0, 0, 7, 8, 0, 9]) == [0.0] * 6, "not counted"
+    assert ages([5, 5, 5, 5, 6, 6, 6, 7], samples_of_frame=3) == [0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 0.0]
+
+
+def test_an_age_is_forgotten_as_two_clocks_part() -> None:
+    x = motor_signals.start(U._replace(alive=1), P)._replace(alive=1.0, age=0.5)
+    x, _, _ = motor_signals.update(x, U._replace(alive=2), 150.0, True, P.T_frame, P)
+    assert x.age == pytest.approx(0.5 - motor_signals.DRIFT * P.T_frame, abs=1e-15)
+
+
+def test_a_frame_that_is_not_new_is_what_is_expected_and_late_after_t_bad() -> None:
+    p = P._replace(t_bad=3.0 * T_S, T_frame=T_S)
+    x = motor_signals.start(U._replace(alive=3), p)._replace(alive=3.0, loop=LOOP)
+    for counter, omega_1, T_mot in ((3, 160.0, 7.0), (4, 150.0, 50.0), (0, 150.0, 50.0)):
+        u = motor_signals.filled(x, U._replace(alive=counter), 160.0)
+        assert (u.omega_1_meas, u.T_mot_est) == (omega_1, T_mot)
+    late = []
+    for _ in range(4):
+        x, _, found = motor_signals.update(x, U._replace(alive=3, T_mot_est=7.0), 150.0, True, T_S, p)
+        late.append(found[FRAME_LATE])
+    assert late == [False, False, False, True]

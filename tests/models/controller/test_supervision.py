@@ -365,3 +365,37 @@ def test_a_lost_motor_speed_is_answered_within_a_fifth_of_a_period_of_the_drive_
     statuses = [x.status for x in run(block, lost)][100:]
     assert statuses[round(0.012 / T_S)] != FALLBACK
     assert statuses[round(0.022 / T_S)] == FALLBACK
+
+
+def swinging(seconds: float, **changes: Any) -> list[Input]:
+    """A drive train that swings on and on, with wheels that turn by a third slower than the motor."""
+    return [u._replace(omega_2_can=0.67 * u.omega_2_can, **changes) for u in shaken(seconds)]
+
+
+def test_while_a_slip_control_is_active_wheels_may_part_and_no_half_swing_counts() -> None:
+    """And the gains are those of wheels that slip."""
+    with_it, without = (run_with_motor(OURS, swinging(0.5, slip_control=told)) for told in (True, False))
+    assert {x.estimator.slip for x in with_it[1:]} == {1.0}
+    assert {x.swings.count for x in with_it} == {0.0}
+    assert {x.trust.cause for x in with_it} == {causes.NONE}
+    assert causes.WHEEL_CONTRADICTS in {x.trust.cause for x in without}
+
+
+def test_frames_that_are_counted_change_nothing_while_they_are_new() -> None:
+    inputs = shaken(0.3)
+    counted = run(OURS, [u._replace(alive=k) for k, u in enumerate(inputs, 7)])
+    for x, y in zip(run(OURS, inputs), counted, strict=True):
+        assert x.motor._replace(alive=0.0) == y.motor._replace(alive=0.0)
+        assert x._replace(motor=y.motor) == y
+
+
+def test_a_frame_that_stays_away_is_bridged_and_then_let_go_of() -> None:
+    """For t_bad, whatever stands in it; and the damping is back t_proof after new ones."""
+    inputs = shaken(0.6)
+    gone = range(100, 130)
+    counted = [u._replace(alive=min(k, 99) if k in gone else k + 1) for k, u in enumerate(inputs)]
+    counted = [u._replace(omega_1_meas=1e3) if k in gone else u for k, u in enumerate(counted)]
+    lost = [x.trust.cause == causes.FRAME_LATE for x in run_with_motor(OURS, counted)[1:]]
+    p = OURS.Parameters()
+    assert lost.index(True) == pytest.approx(100 + p.t_bad / T_S, abs=1)
+    assert len(lost) - 1 - lost[::-1].index(True) == pytest.approx(130 + p.t_proof / T_S, abs=2)

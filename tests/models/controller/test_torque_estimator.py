@@ -93,7 +93,7 @@ E_0 = Estimate(omega_1=150.0, omega_2=148.0, phi=0.5, T_l=-3.0)
 @pytest.mark.parametrize("error", [4.0, -4.0])
 def test_the_motor_speed_corrects_with_the_same_gains_with_and_without_messages(share: float, error: float) -> None:
     """4 rad/s above the estimate or below it; what a message is compared with waits for the end of the sample."""
-    x = estimator.take_motor_speed(estimating(E_0, share, late=140.0), 150.0 + error, T_S, GAINS)
+    x = estimator.take_motor_speed(estimating(E_0, share, late=140.0), 150.0 + error, False, T_S, GAINS)
     assert x.base == 150.0 + error
     corrected = estimating(advanced(E_0, error, Estimate(0.5, 0.25, -0.0625, 1.0)), share, late=140.0)
     assert x._replace(base=0.0, estimate=estimate(x)) == corrected._replace(drift=x.drift)
@@ -103,7 +103,7 @@ def test_the_motor_speed_corrects_with_the_same_gains_with_and_without_messages(
 def test_while_the_wheels_slip_the_load_may_change_fast(slip: float, correction: tuple[float, ...]) -> None:
     """With the gains for slip, half of them when half of it is forgotten; 4 rad/s above the estimate."""
     x = estimating(E_0)._replace(slip=slip)
-    y = estimator.take_motor_speed(x, 154.0, T_S, GAINS._replace(t_grip=1e9))
+    y = estimator.take_motor_speed(x, 154.0, False, T_S, GAINS._replace(t_grip=1e9))
     assert estimate(y) == pytest.approx(advanced(E_0, 1.0, Estimate(*correction)))
 
 
@@ -120,7 +120,7 @@ def test_slip_is_seen_at_once_and_forgotten_in_t_grip() -> None:
     x = estimating(E_0)
     for k in range(5):
         speed = estimator.motion(x, p).omega_1 + (100.0 if k == 0 else 0.0)
-        x = estimator.take_motor_speed(x, speed, 0.25, p)
+        x = estimator.take_motor_speed(x, speed, False, 0.25, p)
         slips.append(x.slip)
     assert slips == [1.0, 0.75, 0.5, 0.25, 0.0]
 
@@ -129,7 +129,7 @@ def test_the_drift_is_the_mean_of_the_recent_innovations() -> None:
     p, drifts = P._replace(t_drift=1.0), []
     x = estimating(E_0)
     for _ in range(3):
-        x = estimator.take_motor_speed(x, estimator.motion(x, p).omega_1 + 4.0, 0.25, p)
+        x = estimator.take_motor_speed(x, estimator.motion(x, p).omega_1 + 4.0, False, 0.25, p)
         drifts.append(x.drift)
     assert drifts == pytest.approx([1.0, 1.75, 2.3125])
 
@@ -139,7 +139,9 @@ def test_what_the_speeds_are_counted_from_is_of_no_account(base: float) -> None:
     x = estimating(E_0)
     moved = x._replace(base=base, estimate=estimator.counted_from(base, E_0))
     assert estimator.motion(moved, GAINS) == estimator.motion(x, GAINS)
-    assert estimator.take_motor_speed(moved, 154.0, T_S, GAINS) == estimator.take_motor_speed(x, 154.0, T_S, GAINS)
+    assert estimator.take_motor_speed(moved, 154.0, False, T_S, GAINS) == estimator.take_motor_speed(
+        x, 154.0, False, T_S, GAINS
+    )
     later, expected = (estimator.predict(y, 60.0, True, T_S, GAINS) for y in (moved, x))
     assert later.late == expected.late
     assert estimate(later) == pytest.approx(expected.estimate, rel=1e-12)
@@ -192,7 +194,7 @@ def test_an_estimate_with_more_twist_than_the_drive_train_can_bear_begins_anew(s
     bound = 0.25 + 4.0 * 100.0 / 128.0
     for phi, known in ((bound, True), (math.nextafter(bound, math.inf), False)):
         x = estimating(E_0._replace(phi=side * phi), 0.5, late=140.0)
-        y = estimator.take_motor_speed(x, E_0.omega_1, T_S, p)
+        y = estimator.take_motor_speed(x, E_0.omega_1, False, T_S, p)
         assert (y.estimate.phi == side * phi) is known
         assert (y == estimator.restart(x, E_0.omega_1, 0.0, p)) is not known
     assert y == EstimatorState(E_0.omega_1, ANEW, late=E_0.omega_1, share=0.5, drift=0.0, slip=0.0)
@@ -204,13 +206,13 @@ def test_the_correction_itself_may_lead_beyond_the_bound(side: float) -> None:
     p = GAINS._replace(T_max=100.0, C=128.0, phi_B=0.25)
     for margin, known in ((1.125, True), (0.875, False)):
         e = E_0._replace(phi=side * (0.25 + 4.0 * 100.0 / 128.0 - margin))
-        x = estimator.take_motor_speed(estimating(e), e.omega_1 - side * 16.0, T_S, p)
+        x = estimator.take_motor_speed(estimating(e), e.omega_1 - side * 16.0, False, T_S, p)
         assert (x.estimate != ANEW) is known
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_a_twist_that_is_no_number_begins_anew(value: float) -> None:
-    assert estimator.take_motor_speed(estimating(E_0._replace(phi=value)), 150.0, T_S, P).estimate == ANEW
+    assert estimator.take_motor_speed(estimating(E_0._replace(phi=value)), 150.0, False, T_S, P).estimate == ANEW
 
 
 def test_from_whatever_estimate_a_finite_one_comes() -> None:
@@ -218,7 +220,7 @@ def test_from_whatever_estimate_a_finite_one_comes() -> None:
     for name in Estimate._fields:
         x = estimating(E_0._replace(**{name: 1e6}))
         for _ in range(2000):
-            x = estimator.predict(estimator.take_motor_speed(x, 150.0, T_S, P), 50.0, True, T_S, P)
+            x = estimator.predict(estimator.take_motor_speed(x, 150.0, False, T_S, P), 50.0, True, T_S, P)
         assert estimator.motion(x, P).omega_2 == pytest.approx(150.0, abs=20.0), name
         assert abs(x.estimate.phi) <= P.phi_B + 4.0 * P.T_max / P.C, name
 

@@ -203,7 +203,7 @@ def test_nothing_is_known_at_the_start_and_after_t_apart_of_motion_it_is_sure(si
 
 def test_each_cause_is_a_row_with_a_number_a_word_and_a_parameter() -> None:
     """As the output `cause` declares them; a row without a parameter counts at once."""
-    rows = (*FAILURES, causes.FEEDING)
+    rows = sorted((*FAILURES, causes.FEEDING))
     assert [row.number for row in rows] == list(range(2, 2 + len(rows)))
     assert [name for name, _ in causes.OUTPUT.items] == ["none", *(row.word for row in rows)]
     assert list(CLOCKS) == ["t_bad", "t_apart", ""]

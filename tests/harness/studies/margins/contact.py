@@ -32,7 +32,7 @@ def torque(point: Point, step: float = 0.1, gain: float = 1.0, duration: float =
         motor=NOISELESS, can=EVEN, plant={"v_0": point.v, "T_0": point.T}, controller={"swing": 1.0}
     )
     block, p = motor_and_plant(point.plant), (given.of("motor", MOTOR), given.of("plant", point.plant))
-    demand = {"T_driver": point.T, "enable": True, "direction": 0}
+    demand = {"T_driver": point.T}
     drive = runner(block, point.plant.Input(T_mot=point.T), p)
 
     def wheels(plant: Any) -> Any:
@@ -40,7 +40,7 @@ def torque(point: Point, step: float = 0.1, gain: float = 1.0, duration: float =
 
     def measured(motor: Any, plant: Any) -> Any:
         known = plant._asdict() | motor._asdict() | bus.output(None)._asdict() | demand
-        return point.controller.Input(**{name: known[name] for name in point.controller.Input._fields})
+        return point.controller.Input(**{name: known[name] for name in point.controller.Input._fields if name in known})
 
     motor, plant = drive.output(point.plant.Input())
     bus = runner(CAN, wheels(plant), given.of("can", CAN))
