@@ -159,8 +159,8 @@ def _late_one(p: Parameters) -> Fault:
 
 
 def _sent(u: Input, fault: Fault) -> Sent:
-    speed, torque, wheel, *others = u
-    return Sent(where(fault.signal == WHEEL_SPEED, wheel, speed), torque, *others)
+    speed = where(fault.signal == WHEEL_SPEED, u.omega_2_sent, u.omega_1_sent)
+    return Sent(speed, u.T_mot_sent, u.valid_sent, u.counter_sent, u.alive_sent)
 
 
 def is_of(fault: Fault, signal: int) -> bool:
