@@ -10,6 +10,7 @@ from .harness.cosimulation.results import Results as Results
 from .harness.metrics.run_metrics import Metrics as Metrics
 from .harness.metrics.notebook_table import frame as frame
 from .harness.views.signals_file import write_signals as write_signals
+from .harness.views.run_figure import plot as plot
 
 # Manoeuvres: what driver, brakes and road do
 from .harness.manoeuvres.catalogue import MANOEUVRES as MANOEUVRES

@@ -17,6 +17,7 @@ from docs.site.declared import TABLES
 from docs.studies import data_file
 from docs.studies.data_file import Kept
 from docs.studies.study import Cell, Column, Table, number
+from driveline.harness.base.plain_text import printed
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.figure_style import draw
 from driveline.harness.views.markdown import markdown_table
@@ -78,7 +79,7 @@ def measured_table(study: str, name: str) -> str:
 
 def as_markdown(table: Table) -> str:
     """Words to the left, numbers to the right."""
-    headings = [f"{each.name}, {each.unit}" if each.unit else each.name for each in table.columns]
+    headings = [f"{each.name}, {printed(each.unit)}" if each.unit else each.name for each in table.columns]
     rows = [
         [_escaped(row), *(_escaped(number(cell, of)) for cell, of in zip(cells, table.columns, strict=True))]
         for row, cells in table.rows.items()

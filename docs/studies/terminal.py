@@ -2,6 +2,7 @@
 
 from rich.table import Table as Printed
 
+from driveline.harness.base.plain_text import printed
 from driveline.harness.views.terminal import print_table
 
 from .study import Table, number
@@ -9,8 +10,8 @@ from .study import Table, number
 
 def show(name: str, table: Table) -> None:
     """Prints a table."""
-    headings = (f"{each.name}, {each.unit}" if each.unit else each.name for each in table.columns)
-    printed = Printed(table.label, *headings, title=name, title_justify="left")
+    headings = (f"{each.name}, {printed(each.unit)}" if each.unit else each.name for each in table.columns)
+    shown = Printed(table.label, *headings, title=name, title_justify="left")
     for row, cells in table.rows.items():
-        printed.add_row(row, *(number(cell, column) for cell, column in zip(cells, table.columns, strict=True)))
-    print_table(printed)
+        shown.add_row(row, *(number(cell, column) for cell, column in zip(cells, table.columns, strict=True)))
+    print_table(shown)

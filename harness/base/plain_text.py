@@ -1,6 +1,8 @@
 """Texts of strangers and of the system, as they may stand in a message: one line, no control characters, not too
 long."""
 
+import re
+
 LONGEST = 500
 """Characters of a text that are shown."""
 
@@ -32,3 +34,9 @@ def words(error: BaseException) -> str:
     except Exception:
         text = ""
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def printed(unit: str) -> str:
+    """A unit as tables, figures and pages have it: N·m and m/s³ for the N.m and m/s3 of FMI and of files."""
+    raised = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
+    return re.sub(r"(?<=[A-Za-z)])\^?[2-9]", lambda power: power[0][-1].translate(raised), unit.replace(".", "·"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -71,6 +71,12 @@ class Results(np.ndarray):
     def __setstate__(self, state: Any) -> None:
         own, self.units = state
         super().__setstate__(own)
+
+    def plot(self, names: Iterable[str] = (), **how: Any) -> None:
+        """Shows the run in panels over time; arguments and errors are those of `driveline.plot`."""
+        from driveline import plot  # what draws is of a later room
+
+        plot({"": self}, names, **how)
 
     def to_pandas(self) -> DataFrame:
         """A column a signal, over the time in s; `attrs["units"]` has the units, as of the Parquet files."""

@@ -100,7 +100,7 @@ def content(
         "metrics": [
             {
                 "name": metric.name,
-                "heading": f"{column.plain_heading}\n{column.unit}",
+                "heading": f"{column.plain_heading}\n{column.printed_unit}",
                 "meaning": metric.description,
                 "factor": column.factor,
                 "decimals": column.decimals,

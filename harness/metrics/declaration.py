@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 from math import isfinite, nan
 from typing import Any, NamedTuple, get_type_hints
 
+from ..base.plain_text import printed
+
 
 class Absent(ValueError):
     """A metric makes no sense for a run; the text says why."""
@@ -27,6 +29,16 @@ class Column(NamedTuple):
     def plain_heading(self) -> str:
         """The heading on one line."""
         return self.heading.replace("-\n", "").replace("\n", " ")
+
+    @property
+    def printed_unit(self) -> str:
+        """The unit as it is printed; nothing where there is none."""
+        return "" if self.unit == "1" else printed(self.unit)
+
+    @property
+    def titled(self) -> str:
+        """Heading and unit on one line."""
+        return ", ".join(filter(None, (self.plain_heading, self.printed_unit)))
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from ..base.plain_text import printed
+
 
 class FileUnit(NamedTuple):
     """The unit that a quantity has in a file.
@@ -19,7 +21,7 @@ class FileUnit(NamedTuple):
     @property
     def printed(self) -> str:
         """The unit as it is printed."""
-        return self.unit.replace(".", "·")
+        return printed(self.unit)
 
     def __str__(self) -> str:
         """What stands behind the name of the quantity."""

@@ -32,9 +32,6 @@ SAID = {
 }
 """How a note names a metric."""
 
-PRINTED = {"N.m": "N·m", "m/s3": "m/s³"}
-"""Units as they are printed."""
-
 
 def shown_at_first(manoeuvre: Manoeuvre) -> tuple[float, float]:
     """From and to when in s: the step, or else the whole manoeuvre."""
@@ -56,7 +53,7 @@ def in_words(metrics: Metrics | None, *names: str) -> str:
     columns = {metric.name: (metric, column) for metric, column in SHOWN}
     found = [columns[name] for name in names]
     return ", ".join(
-        f"{SAID[metric.name]} {number(metric.of(metrics), column)} {PRINTED.get(column.unit, column.unit)}"
+        f"{SAID[metric.name]} {number(metric.of(metrics), column)} {column.printed_unit}"
         for metric, column in found
         if metrics and not isnan(metric.of(metrics))
     )

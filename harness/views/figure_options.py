@@ -18,7 +18,7 @@ class FigureOptions(NamedTuple):
     Attributes:
         caption: what was set, in small below.
         window: from and to when in s; None: what each figure shows by itself.
-        kinds: of the files, some of KINDS.
+        kinds: of the files, some of KINDS; none: the figure is shown.
     """
 
     caption: str = ""

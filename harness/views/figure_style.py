@@ -80,11 +80,28 @@ def sheet(
     """
     files: list[Path] = []
     with style.context(STYLE):
-        figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(h_pad=pads[0], w_pad=pads[1]))
+        layout = ConstrainedLayoutEngine(h_pad=pads[0], w_pad=pads[1])
+        figure = Figure(figsize=size, layout=layout) if options.kinds else _on_screen(size, layout)
         yield figure, files
         figure.align_ylabels()
         titled(figure, title, options.caption, title_size)
-        files += save(figure, stem, options.kinds)
+        if options.kinds:
+            files += save(figure, stem, options.kinds)
+        else:
+            _show()
+
+
+def _on_screen(size: tuple[float, float], layout: ConstrainedLayoutEngine) -> Figure:
+    """A figure that a window or a notebook shows."""
+    from matplotlib import pyplot  # files are written without what windows need
+
+    return pyplot.figure(figsize=size, layout=layout)
+
+
+def _show() -> None:
+    from matplotlib import pyplot
+
+    pyplot.show()
 
 
 def plot(

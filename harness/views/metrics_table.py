@@ -92,7 +92,7 @@ def _named(some: Sequence[Row], rows: Sequence[Row]) -> str:
 
 def write_markdown(rows: Sequence[Row], path: Path, title: str = DAMPINGS) -> None:
     """Writes the table, with the plant as first column, and what every metric means."""
-    headings = ["plant", "manoeuvre", "damping", *(f"{column.plain_heading}, {column.unit}" for _, column in SHOWN)]
+    headings = ["plant", "manoeuvre", "damping", *(column.titled for _, column in SHOWN)]
     table = markdown_table(headings, ([row.plant, *cells(row)] for row in rows), labels=3)
     meanings = [
         (metric.column.plain_heading if metric.column else "", f"`{metric.key}`", metric.description)
@@ -121,7 +121,7 @@ def _compared(value: float, other: float) -> str:
 
 def write_rides(rides: Mapping[str, RideMetrics], title: str, path: Path, notes: Sequence[str] = ()) -> None:
     """Writes the table of the rides as Markdown, and below it what there is to know of it."""
-    headings = [title, *(f"{column.plain_heading}, {column.unit}" for _, column in RIDES_SHOWN)]
+    headings = [title, *(column.titled for _, column in RIDES_SHOWN)]
     below = "".join(f"\n{note}\n" for note in notes)
     write_text(f"{markdown_table(headings, ride_rows(rides), labels=1)}\n{below}", path)
 

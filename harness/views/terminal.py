@@ -93,7 +93,9 @@ def runs_table(rows: Sequence[Row], title: str = DAMPINGS) -> Table:
     table.add_column("manoeuvre", no_wrap=True)
     table.add_column("", min_width=3)
     for _, column in SHOWN:
-        table.add_column(f"{column.heading}\n{column.unit}", justify="right", min_width=NUMBER_WIDTH, overflow="fold")
+        table.add_column(
+            f"{column.heading}\n{column.printed_unit}", justify="right", min_width=NUMBER_WIDTH, overflow="fold"
+        )
     for k, row in enumerate(rows):
         if k == 0 or row.plant != rows[k - 1].plant:
             table.add_section()
@@ -116,7 +118,7 @@ def print_rides(rides: Mapping[str, RideMetrics], title: str, notes: Sequence[st
 
 def rides_table(rides: Mapping[str, RideMetrics], title: str) -> Table:
     """A row for each ride by its name, with what it is over the first one, the undamped, in brackets."""
-    headings = (f"{column.heading}\n{column.unit}" for _, column in RIDES_SHOWN)
+    headings = (f"{column.heading}\n{column.printed_unit}" for _, column in RIDES_SHOWN)
     return plain_table(title, ["", *headings], ride_rows(rides))
 
 

@@ -86,4 +86,4 @@ def _largest(runs: Sequence[Sequence[Outcome]], k: int) -> Iterator[Line]:
             values = [number(metric.of(one.metrics), column) for one in worst]
             run, several = worst[k].row().run, len(worst) > 2
             name = f"{run}, {worst[k].case.controller_name}" if several else run
-            yield Line([f"{column.plain_heading}, {column.unit}", name, *values], run)
+            yield Line([column.titled, name, *values], run)

@@ -83,7 +83,7 @@ def _worst(pieces: Sequence[tuple[float, float]], rides: Rides) -> Table:
         rows.append(Row([_name(start), f"{mean:.2f}", f"{swing[at].mean():.2f}"], _name(start)))
     meaning = "mean over the piece of half the peak to peak within 0.2 s, of gear torque less demand"
     return Table(
-        [Heading("piece"), Heading("swing, N.m", meaning, True), Heading("without damping", number=True)], rows
+        [Heading("piece"), Heading("swing, N·m", meaning, True), Heading("without damping", number=True)], rows
     )
 
 

@@ -8,6 +8,7 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from ...base.csv_file import write_csv
+from ...base.plain_text import printed
 from ...views.terminal import print_table
 from .fault_campaign import Outcome, count, coverage, judged, plan_of
 from .fault_cases import PLANS, Plan, case
@@ -43,8 +44,8 @@ def _verdicts(outcome: Outcome) -> Table:
         table.add_column(heading, justify="right" if heading in ("measured", "limit") else "left")
     for judge in JUDGES:
         verdict = "[red]not clean[/red]" if judge.name in outcome.failed else "clean"
-        limit = f"{round(judge.limit, 6):g}"
-        table.add_row(judge.name, f"{outcome.measured[judge.name]:.3g}", limit, judge.unit, verdict, judge.question)
+        limit, unit = f"{round(judge.limit, 6):g}", printed(judge.unit)
+        table.add_row(judge.name, f"{outcome.measured[judge.name]:.3g}", limit, unit, verdict, judge.question)
     return table
 
 

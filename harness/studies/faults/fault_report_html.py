@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ...base.plain_text import printed
 from ...views.colours import COLOURS
 from ...views.page.figures import Figure, figure
 from ...views.page.report import Heading, Row, Section, Table, write_report
@@ -94,7 +95,8 @@ def _judges(outcomes: Sequence[Outcome]) -> Table:
     ]
     largest = {judge.name: max(outcome.measured[judge.name] for outcome in outcomes) for judge in JUDGES}
     rows = [
-        Row([j.name, f"{round(j.limit, 6):g}", f"{round(largest[j.name], 6):.3g}", j.unit, j.question]) for j in JUDGES
+        Row([j.name, f"{round(j.limit, 6):g}", f"{round(largest[j.name], 6):.3g}", printed(j.unit), j.question])
+        for j in JUDGES
     ]
     return Table(headings, rows)
 

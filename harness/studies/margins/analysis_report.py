@@ -52,11 +52,7 @@ SMALLEST = ("gain_margin", "delay_margin")
 
 
 def _headings(record: type) -> list[str]:
-    return [
-        f"{metric.column.plain_heading}{'' if metric.column.unit == '1' else ', ' + metric.column.unit}"
-        for metric in declared(record)
-        if metric.column
-    ]
+    return [metric.column.titled for metric in declared(record) if metric.column]
 
 
 def margin_headings() -> list[str]:

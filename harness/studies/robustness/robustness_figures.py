@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from ...manoeuvres.catalogue import MANOEUVRES
-from ...views.annotations import PRINTED
 from ...views.colours import GREY
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import plot
@@ -41,7 +40,7 @@ def distributions(summaries: Sequence[Summary], heading: str = "") -> list[Panel
     for metric, bounds in DRAWN.items():
         column = SHOWN[metric]
         window = bounds[0] * column.factor, bounds[1] * column.factor
-        x = Axis(f"{column.plain_heading} in {PRINTED.get(column.unit, column.unit)}", window, "log")
+        x = Axis(f"{column.plain_heading} in {column.printed_unit}", window, "log")
         curves = [
             _distribution(summary, metric, window[0], CONTROLLERS[k % len(CONTROLLERS)][0], 0.9 if k else 1.6)
             for k, summary in enumerate(summaries)

@@ -61,7 +61,7 @@ def _table(found: Sequence[Summary]) -> Table:
     headings = [
         *map(Heading, ("plant", "manoeuvre", "controller")),
         *(Heading(text, "; ".join(VERDICTS[name] for name in names), True) for text, names in verdicts.items()),
-        *(Heading(f"{c.plain_heading}, {c.unit}", meanings[name], True) for name, c in SHOWN.items()),
+        *(Heading(c.titled, meanings[name], True) for name, c in SHOWN.items()),
     ]
     rows = [
         Row([s.plant, s.manoeuvre, s.controller, *cells(s)], muted=s.controller != found[0].controller) for s in found
@@ -93,7 +93,7 @@ def _name(summary: Summary) -> str:
 
 def _worst(own: Sequence[Summary], drawn: Mapping[str, Compared], seed: int) -> Table:
     column = SHOWN["settling_time"]
-    headings = [Heading("run"), Heading(f"{column.plain_heading}, {column.unit}", number=True), Heading("draw")]
+    headings = [Heading("run"), Heading(column.titled, number=True), Heading("draw")]
     rows = []
     for summary in own:
         value = column.factor * summary.worst.magnitude("settling_time")

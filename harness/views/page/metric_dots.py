@@ -24,7 +24,7 @@ def metric_dots(runs: Mapping[str, Mapping[str, Metrics]]) -> list[Figure]:
         values = {run: [column.factor * metric.of(each) for each in found.values()] for run, found in runs.items()}
         kept = {run: each for run, each in values.items() if not any(map(isnan, each))}
         if kept:
-            name = f"{column.plain_heading}, {column.unit}"
+            name = column.titled
             choices[name] = [_panel(kept, list(next(iter(runs.values()))))]
             low, high = np.min(list(kept.values())), np.max(list(kept.values()))
             windows[name] = min(0.0, 1.05 * low), max(1.05 * high, 1e-6)

@@ -153,4 +153,4 @@ class Table:
 def of_metrics(shown: Iterable[tuple[Metric, Column]]) -> Iterator[Heading]:
     """The headings of metrics as the tables show them."""
     for metric, column in shown:
-        yield Heading(f"{column.plain_heading}, {column.unit}", f"{metric.description} ({metric.key} in files)", True)
+        yield Heading(column.titled, f"{metric.description} ({metric.key} in files)", True)

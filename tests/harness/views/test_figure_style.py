@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
@@ -19,11 +20,14 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 
+import driveline
+from driveline.harness.base.plain_text import printed
+from driveline.harness.cosimulation.results import Results
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.step_response import SETTLED, response
 from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.views import replay_figure
+from driveline.harness.views import figure_style, replay_figure
 from driveline.harness.views.annotations import BAND, GAP, gap
 from driveline.harness.views.drive_figure import AROUND, plot_drive, reversal
 from driveline.harness.views.figure_options import KINDS, FigureOptions
@@ -71,13 +75,14 @@ def run(manoeuvre: Any, swing: float, duration: float, with_estimate: bool = Tru
 
 NAMES = "without damping", "mine", "theirs"
 STEPS = run(TIPIN, 60.0, 4.0), run(TIPIN, 8.0, 4.0)
+TWO_STEPS = dict(zip(NAMES, STEPS, strict=False))
 DRIVES = run(DRIVE, 60.0, 20.0), run(DRIVE, 8.0, 20.0)
 RECORDED = (np.array([0.0, 10.0, 20.0]), np.array([3.0, 5.0, 7.0]))
 UNITS = {"v": FileUnit("km/h", 1.0 / 3.6), "T_mot": FileUnit("kNm", 1e3)}
 RIDES: dict[str, np.ndarray] = dict(zip(NAMES, (*DRIVES, DRIVES[1]), strict=True))
 
 PLOTS: dict[str, Callable[[Path, FigureOptions], list[Path]]] = {
-    "step": lambda stem, options: plot_step(dict(zip(NAMES, STEPS, strict=False)), TIPIN, "Plant", stem, options),
+    "step": lambda stem, options: plot_step(TWO_STEPS, TIPIN, "Plant", stem, options),
     "drive": lambda stem, options: plot_drive(dict(zip(NAMES, DRIVES, strict=False)), DRIVE, "Plant", stem, options),
     "run": lambda stem, options: plot_run(STEPS[0], TIPIN, "Plant", stem, options),
     "run of a drive": lambda stem, options: plot_run(DRIVES[0], DRIVE, "Plant", stem, options),
@@ -349,3 +354,61 @@ def test_the_close_up_of_a_replay_is_where_the_gear_torque_swings_most(begin: fl
     first, swing = roughest(run)[0]
     assert first <= begin < begin + 3.0 <= first + PIECE
     assert swing == pytest.approx(10.0, rel=0.1)  # half of the piece swings by 20 N.m
+
+
+@pytest.mark.parametrize(
+    ("results", "names", "more", "labels", "window"),
+    [
+        (STEPS[1], [], {}, ["gear torque\nin N·m", "motor torque\nin N·m"], (0.9, 2.4)),
+        (STEPS[1], ["plant.T_gear"], {"window": (1.0, 1.5)}, ["plant.T_gear\nin N·m"], (1.0, 1.5)),
+        (DRIVES[1], ["plant.T_gear"], {}, ["plant.T_gear\nin N·m"], (0.0, 20.0)),
+        (
+            TWO_STEPS,
+            [],
+            {},
+            ["plant.T_gear\nin N·m", "controller.T_ref\nin N·m"],
+            (0.9, 2.4),
+        ),
+    ],
+)
+def test_a_program_shows_runs_in_one_line_a_step_close_up(
+    monkeypatch: pytest.MonkeyPatch, results: Any, names: list[str], more: Any, labels: Any, window: Any
+) -> None:
+    made: list[Figure] = []
+    monkeypatch.setattr(figure_style, "save", lambda figure, stem, kinds: made.append(figure) or [stem, *kinds])
+    units = {"plant.T_gear": "N.m", "controller.T_ref": "N.m"}
+    runs = results if isinstance(results, dict) else {"": results}
+    known = {name: Results(run, units) for name, run in runs.items()}
+    driveline.plot(known if len(runs) > 1 else known[""], names, file="run.svg", **more)
+    (figure,) = made
+    assert [axes.get_ylabel() for axes in figure.axes][: len(labels)] == labels
+    assert figure.axes[0].get_xlim() == pytest.approx(window)
+    assert len(figure.axes[0].lines) == (len(runs) if names or len(runs) > 1 else 3)
+
+
+def test_a_run_is_shown_where_no_file_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[int] = []
+    monkeypatch.setattr(pyplot, "show", lambda: shown.append(len(pyplot.get_fignums())))
+    Results(STEPS[1], {}).plot()
+    pyplot.close("all")
+    assert shown == [1]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"names": ["T_gear"]}, "no column T_gear; did you mean plant.T_gear"),
+        ({"names": "plant.T_gear"}, "names = 'plant.T_gear': it must be a list of"),
+        ({"file": "run.jpg"}, "file = run.jpg: it must end in .png, .pdf, .svg"),
+    ],
+)
+def test_what_cannot_be_shown_is_said(given: Any, message: str) -> None:
+    with pytest.raises(driveline.DrivelineError, match=message):
+        Results(STEPS[1], {}).plot(**given)
+
+
+@pytest.mark.parametrize(
+    ("unit", "text"), [("N.m", "N·m"), ("m/s3", "m/s³"), ("(N.m)^5", "(N·m)⁵"), ("1/min", "1/min"), ("kg.m2", "kg·m²")]
+)
+def test_units_are_printed_in_one_spelling(unit: str, text: str) -> None:
+    assert printed(unit) == text

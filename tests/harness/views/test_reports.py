@@ -89,7 +89,7 @@ def test_a_ride_without_damage_has_a_dash_and_no_ratio():
 
 def test_the_terminal_table_names_plant_units_and_runs():
     text = printed(runs_table([OFF, ON]))
-    assert all(part in text for part in ("Plant", "tipin15", "ms", "N.m", "1758", "114"))
+    assert all(part in text for part in ("Plant", "tipin15", "ms", "N·m", "1758", "114"))
 
 
 def test_the_title_names_a_controller_that_is_not_the_usual_one(tmp_path):

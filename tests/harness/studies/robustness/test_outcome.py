@@ -122,7 +122,7 @@ def test_each_metric_has_a_panel_with_the_shares_of_all_controllers() -> None:
     assert [panel.heading for panel in panels] == ["tipin15", *[""] * (len(DRAWN) - 1)]
     for panel, metric in zip(panels, DRAWN, strict=True):
         assert panel.x is not None
-        assert SHOWN[metric].unit.replace("m/s3", "m/s³") in panel.x.label
+        assert SHOWN[metric].printed_unit in panel.x.label
         assert panel.ticks[95.0] == "95"
         curves = [part for part in panel.parts if isinstance(part, Curve)]
         assert [curve.label for curve in curves] == list(CONTROLLERS)

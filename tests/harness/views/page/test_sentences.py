@@ -143,7 +143,7 @@ def test_of_each_run_the_metrics_without_damping_and_with_each_controller_are_do
 ) -> None:
     values = {"tip-in": (4.0, 1.0, 9.0), "launch": (5.0, 2.0, 8.0), "drive": (6.0, 3.0, 7.0)}
     runs: Any = {run: dict(zip(("without damping", "A", "B"), each, strict=True)) for run, each in values.items()}
-    shown = SimpleNamespace(of=lambda value: value), SimpleNamespace(factor=10.0, plain_heading="swing", unit="N·m")
+    shown = SimpleNamespace(of=lambda value: value), SimpleNamespace(factor=10.0, titled="swing, N·m")
     monkeypatch.setattr(metric_dots, "SHOWN", [shown])
     (drawn,) = metric_dots.metric_dots(runs)
     (panel,) = drawn.choices["swing, N·m"]
