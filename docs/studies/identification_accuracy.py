@@ -10,14 +10,17 @@ from math import log
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
+from typing import Any
 
 import numpy as np
 
-from docs.studies.foreign_loop import drawn, driven, logged
+from docs.studies.foreign_loop import Car, drawn, driven, logged
+from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.base.csv_file import write_csv
+from driveline.harness.design import redesign
 from driveline.harness.design.design import design
-from driveline.harness.design.design_trials import controller_parameters, settled
-from driveline.harness.design.design_weights import MOTOR, PLANT
+from driveline.harness.design.design_trials import loop_parameters
+from driveline.harness.design.design_weights import MOTOR, PLANT, records
 from driveline.harness.design.redesign import REDESIGN_MANOEUVRES
 from driveline.harness.identification.car_file import identified_car
 from driveline.harness.identification.drive_train_response import response
@@ -49,15 +52,25 @@ WIDE = {"J_2": (0.05, 2.0), "C": (30.0, 450.0), "phi_B": (1e-3, 0.4)}
 
 
 def recording(
-    plant: str, seed: int, parameters: Mapping[str, float] | None = None, wheels: MeasurementWheels | None = None
+    plant: str,
+    seed: int,
+    parameters: Mapping[str, float] | None = None,
+    wheels: MeasurementWheels = WHEELS,
+    car: Mapping[str, Any] | None = None,
 ) -> Measurement:
-    """A test drive as recorded."""
+    """A test drive as recorded.
+
+    Args:
+        car: entries of its vehicle file.
+    """
+    of, _, _ = records(car or {})
     drive = binary_torque("prbs", **TEST_DRIVE, v_0=TEST_SPEED / 3.6)
-    results = simulate(drive, plant, control=False, parameters=parameters, seed=seed)
+    given = loop_parameters(car or {}, plant) | dict(parameters or {})
+    results = simulate(drive, plant, control=False, parameters=given, seed=seed)
     with TemporaryDirectory() as folder:
         path = Path(folder, f"{plant}_{seed}.csv")
-        write_csv(sensed(results, PLANT.i, wheels or WHEELS, seed), path)
-        return read_measurement(path, PLANT.i, PLANT.r)
+        write_csv(sensed(results, of.i, wheels, seed), path)
+        return read_measurement(path, of.i, of.r)
 
 
 @dataclass(frozen=True)
@@ -123,7 +136,6 @@ class Covered:
         true: the truth.
         deviations: standard deviations.
         bound: those of the Cramer-Rao bound, with the noise of the sensors and the torque as recorded.
-        seconds: of the processor.
     """
 
     amplitude: float
@@ -132,12 +144,12 @@ class Covered:
     true: Mapping[str, float]
     deviations: Mapping[str, float]
     bound: Mapping[str, float]
-    seconds: float
 
 
-def covered(case: tuple[int, int]) -> list[Covered]:
-    """Recordings of cars and loops that are drawn: seed, and how many."""
-    seed, count = case
+def covered(case: tuple[int, int, bool]) -> list[Covered]:
+    """Recordings of cars and loops that are drawn: seed, how many, and whether nothing is known of the car; else the
+    search begins at the truth, for what the intervals hold does not depend on where it begins."""
+    seed, count, from_anywhere = case
     cars, loops = drawn(count, seed)
     seeds = [1000 * seed + k for k in range(count)]
     every, answers = driven(cars, loops, seeds), []
@@ -146,14 +158,21 @@ def covered(case: tuple[int, int]) -> list[Covered]:
             path = Path(folder, "drive.csv")
             logged(every[..., k], car, loop, seeds[k], path)
             recorded = read_measurement(path, car.i, car.r)
-        began = process_time()
-        found = identify(recorded, car.known).found
-        seconds = process_time() - began
         late_T, late_L = loop.shifts
         true = {"J_2": car.J_2, "C": car.C, "phi_B": car.phi_B, "late_T": late_T, "late_L": late_L}
+        found = identify(recorded, car.known).found if from_anywhere else from_truth(recorded, car, true)
         off = {name: getattr(found.p, name) - value for name, value in true.items()}
-        answers.append(Covered(loop.amplitude, bool(k % 2), off, true, found.deviations, bound(found), seconds))
+        answers.append(Covered(loop.amplitude, bool(k % 2), off, true, found.deviations, bound(found)))
     return answers
+
+
+def from_truth(recorded: Measurement, car: Car, true: Mapping[str, float]) -> Found:
+    """What is found by a search that begins at the true parameters."""
+    expected, behind = known(car.known)
+    drive, _ = drive_of(recorded)
+    predictor = Predictor(drive, of_sensors(drive, recorded.T_mot), behind)
+    start = expected._replace(d=0.01, lack_1=0.005, lack_phi=3e-5, lack_L=0.05, **true)
+    return search(predictor, start, FREE, expected._replace(d=expected.damping))
 
 
 def bound(found: Found) -> dict[str, float]:
@@ -176,9 +195,7 @@ def short(seed: int) -> Found:
         path = Path(folder, "drive.csv")
         logged(driven([car], [loop], [seed], SHORT)[..., 0], car, loop, seed, path, SHORT)
         recorded = read_measurement(path, car.i, car.r)
-    start, behind = known(car.known | {"J_2": car.J_2, "C": car.C, "phi_B": car.phi_B})
-    drive, _ = drive_of(recorded)
-    return search(Predictor(drive, of_sensors(drive, recorded.T_mot), behind), start, FREE, start)
+    return from_truth(recorded, car, {"J_2": car.J_2, "C": car.C, "phi_B": car.phi_B})
 
 
 @dataclass(frozen=True)
@@ -226,54 +243,74 @@ def trapped(case: tuple[int, int]) -> Answer:
 
 @dataclass(frozen=True)
 class Judged:
-    """The validation vehicle as identified, against the truth.
+    """A detailed car as identified, against the truth.
 
     Attributes:
         answer: from the recording.
+        phi_B: half the gap over the true one.
+        peak: true frequency in Hz at which the car answers most.
         response: of the car on its own, rms of the difference in dB over RESPONSE.
         gains: settling time and overshoot with the gains of the identified car, over those with the gains of the true
             one, means over REDESIGN_MANOEUVRES.
     """
 
     answer: Answer
+    phi_B: float
+    peak: float
     response: float
     gains: tuple[float, float]
 
 
-RESPONSE = np.linspace(2.0, 12.0, 201)
+RESPONSE = np.linspace(2.0, 12.0, 1001)
 """Frequencies in Hz at which responses are compared."""
 
 
-def judged(case: tuple[int, bool]) -> Judged:
-    """Seed, and whether the load torque is measured."""
-    seed, measured = case
-    recorded = recording(VEHICLE, seed)
+CARS = {"default": {}} | {
+    name: read_vehicle(Path(f"examples/cars/{name}.toml")) for name in ("small", "mid_size", "van")
+}
+"""Entries of their vehicle files."""
+
+
+def judged(case: tuple[str, int, bool]) -> Judged:
+    """One of CARS, seed, and whether the load torque is measured. Known before are the entries of its file but for C,
+    phi_B and tau, which are those of the default car."""
+    name, seed, measured = case
+    car = CARS[name]
+    recorded = recording(VEHICLE, seed, car=car)
     recorded = recorded if measured else replace(recorded, T_load=None)
+    before = {entry: value for entry, value in car.items() if entry not in ("C", "phi_B", "tau")}
     began = process_time()
-    one = identify(recorded)
+    one = identify(recorded, before)
     answer = answer_of(one, process_time() - began)
-    off = 20.0 * np.log10(abs(response(one.p, RESPONSE, one.tyre_of(one.p)) / true_response()))
-    gains = np.array(worth(identified_car(one))) / worth({})
-    return Judged(answer, float(np.sqrt(np.mean(off**2))), (float(gains[0]), float(gains[1])))
+    true = true_response(name)
+    off = 20.0 * np.log10(abs(response(one.p, RESPONSE, one.tyre_of(one.p)) / true))
+    own, others = worth(car, identified_car(one, before)), worth(car, car)
+    return Judged(
+        answer,
+        one.p.phi_B / records(car)[0].phi_B,
+        float(RESPONSE[int(np.argmax(abs(true)))]),
+        float(np.sqrt(np.mean(off**2))),
+        (own[0] / others[0], own[1] / others[1]),
+    )
 
 
-def worth(assumed: Mapping[str, float]) -> tuple[float, float]:
-    """Mean settling time in s and overshoot of the vehicle with the gains of the car that is assumed."""
-    controller = controller_parameters({**assumed, **design(assumed)}, VEHICLE)
-    settling, overshoot = np.mean([settled(VEHICLE, name, controller) for name in REDESIGN_MANOEUVRES], axis=0)
+def worth(car: Mapping[str, Any], assumed: Mapping[str, Any]) -> tuple[float, float]:
+    """Mean settling time in s and overshoot of a detailed car with the gains of the car that is assumed."""
+    gains = {**assumed, **design(assumed)}
+    settling, overshoot = np.mean([redesign.worth(VEHICLE, name, car, gains) for name in REDESIGN_MANOEUVRES], axis=0)
     return float(settling), float(overshoot)
 
 
 @cache
-def true_response() -> np.ndarray:
-    """omega_1 over T_mot of the vehicle in contact, at RESPONSE."""
-    car = linear(Point(plant=validation_vehicle.BLOCK, T=TEST_DRIVE["mean"] + TEST_DRIVE["amplitude"]))
+def true_response(name: str) -> np.ndarray:
+    """omega_1 over T_mot of one of CARS in contact, at RESPONSE."""
+    given: dict[str, dict[str, Any]] = {}
+    for entry, value in loop_parameters(CARS[name], VEHICLE).items():
+        instance, _, parameter = entry.partition(".")
+        given.setdefault(instance, {})[parameter] = value
+    torque = TEST_DRIVE["mean"] + TEST_DRIVE["amplitude"]
+    car = linear(Point(plant=validation_vehicle.BLOCK, parameters=given, T=torque))
     s = 2j * np.pi * RESPONSE
     x = np.array([np.linalg.solve(at * np.eye(len(car.A)) - car.A, car.B) for at in s])
-    T_mot, omega_1 = (x @ car.rows([name])[0] for name in ("T_mot_est", "omega_1"))
+    T_mot, omega_1 = (x @ car.rows([signal])[0] for signal in ("T_mot_est", "omega_1"))
     return omega_1 / T_mot
-
-
-def true_peak() -> float:
-    """Frequency in Hz at which that is largest."""
-    return float(RESPONSE[int(np.argmax(abs(true_response())))])

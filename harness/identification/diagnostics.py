@@ -1,6 +1,6 @@
 """Diagnostics: what may be wrong with a recording, or with what is taken as known, in words of the car."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from scipy.signal import welch
@@ -217,6 +217,17 @@ def diagnose_excitation(found: Found) -> Iterator[str]:
     ]
     if wide:
         yield f"{', '.join(wide)}: 95 % interval wider than +- {100.0 * CLOSE:g} %; excite more or longer"
+
+
+def diagnose_second(apart: Sequence[str], second: Parameters) -> Iterator[str]:
+    """Where the estimate without the last quarter is another one.
+
+    Args:
+        apart: names of the parameters of which the intervals were widened.
+    """
+    if apart:
+        values = ", ".join(f"{name} = {getattr(second, name):.4g}" for name in apart)
+        yield f"without its last quarter the recording tells {values}: the intervals are wider and cover both"
 
 
 def diagnose_torque_loop(loop: FittedLoop, T_s: float, tau: float) -> Iterator[str]:

@@ -1,8 +1,8 @@
 """The most likely parameters, with what is known of them before: scoring steps with a trust that adapts (Levenberg,
 Marquardt), within physical bounds."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from .drive_train import Parameters
 from .prediction import CHANNELS, Noise, Predicted, Predictor
-from .priors import LEAST, PRIORS, before, moved, scales, surprise
+from .priors import LEAST, OF_CAR, PRIORS, before, moved, scales, surprise
 
 Z_95 = float(norm.ppf(0.975))
 """Standard deviations within which 95 % of what is normal are."""
@@ -50,6 +50,7 @@ class Found:
         noise: of the sensors.
         T_s: between samples in s.
         passes: through the recording.
+        off: standard deviations of parameters, in their units, beside those of the likelihood.
     """
 
     p: Parameters
@@ -61,6 +62,7 @@ class Found:
     noise: Noise
     T_s: float
     passes: int
+    off: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def scale(self) -> np.ndarray:
@@ -70,14 +72,14 @@ class Found:
     @cached_property
     def covariance(self) -> np.ndarray:
         """Of the free parameters, in their units: that of the likelihood, each deviation as much larger as the scores
-        of windows scatter more than noise alone (sandwich)."""
+        of windows scatter more than noise alone (sandwich); and what else they are off by."""
         inverse = np.linalg.inv(self.information.sum(axis=0) + np.diag(before(self.free)))
         windows = max(round(len(self.scores) * self.T_s / WINDOW), 2)
         each = np.array([part.sum(axis=0) for part in np.array_split(self.scores, windows)])
         each -= each.mean(axis=0)
         sandwich = inverse @ (each.T @ each) @ inverse * windows / (windows - 1)
         wider = np.sqrt(np.maximum(np.diag(sandwich) / np.diag(inverse), 1.0)) * self.scale
-        return inverse * np.outer(wider, wider)
+        return inverse * np.outer(wider, wider) + np.diag([self.off.get(name, 0.0) ** 2 for name in self.free])
 
     @cached_property
     def deviations(self) -> dict[str, float]:
@@ -91,6 +93,16 @@ class Found:
             return ""
         alone = [np.linalg.inv(of + prior)[k, k] for of in self.information]
         return CHANNELS[int(np.argmin(alone))]
+
+    def confirmed(self, second: Parameters) -> tuple["Found", list[str]]:
+        """With intervals that cover another estimate too, and the names of those that had to be widened for it."""
+        away = {name: abs(getattr(second, name) - getattr(self.p, name)) / Z_95 for name in self.free if name in OF_CAR}
+        apart = [name for name, by in away.items() if self.told_by(name) and by > self.deviations[name]]
+        added = {
+            name: np.sqrt(away[name] ** 2 - self.covariance[k, k]) for k, name in enumerate(self.free) if name in apart
+        }
+        off = {name: float(np.hypot(self.off.get(name, 0.0), by)) for name, by in added.items()}
+        return replace(self, off={**self.off, **off}), apart
 
     def _unit(self, name: str) -> float:
         return getattr(self.p, name) if PRIORS[name].positive else 1.0
@@ -108,7 +120,7 @@ def search(predictor: Predictor, start: Parameters, free: Sequence[str], centre:
         centre: what is expected before.
         most: steps.
     """
-    free, at = tuple(free), predictor.start(start)
+    free, at, drive = tuple(free), predictor.start(start), predictor.drive
     weight, counted = before(free), predictor.counted
 
     def cost(p: Parameters, predicted: Predicted) -> float:
@@ -125,7 +137,7 @@ def search(predictor: Predictor, start: Parameters, free: Sequence[str], centre:
         scores = np.einsum("ckn,cn->nk", d_size, predicted.size[:, counted]) + 0.5 * d_log.sum(axis=0).T
         # a half of what the variance tells is in d_size
         information = np.array([a @ a.T + 0.25 * b @ b.T for a, b in zip(d_size, d_log, strict=True)])
-        return Found(p, free, centre, predicted, scores, information, predictor.noise, predictor.drive.T_s, passes)
+        return Found(p, free, centre, predicted, scores, information, predictor.noise, drive.T_s, passes, drive.off)
 
     predicted = predictor.predicted(start, at)
     best, lowest, trust = found(start, predicted, 1), cost(start, predicted), 1e-2

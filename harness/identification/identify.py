@@ -13,6 +13,7 @@ from .diagnostics import (
     diagnose_offsets,
     diagnose_outliers,
     diagnose_parameters,
+    diagnose_second,
     diagnose_spectrum,
     diagnose_torque_loop,
     is_coloured,
@@ -40,11 +41,12 @@ ALONE = ("J_2", "C", "phi_B", "d", "late_T", "lack_1", "lack_phi", "lack_L")
 WIDE = {"lack_1": 1.0, "lack_phi": 1e-3, "lack_L": 10.0}
 """With these the filter follows what is recorded whatever the parameters are, and the cost has few valleys."""
 
-NARROW = {"lack_1": 0.02, "lack_phi": 1e-4, "lack_L": 0.1}
+NARROW = {"lack_1": 0.02, "lack_phi": 1e-4, "lack_L": 0.2}
 """With these it follows the model, and leaves a valley in which the lacks explain all."""
 
 ROUNDS, BETTER = 4, 1.0
-"""Searches at most, each from the end of the one before, and gain in likelihood for another one: a deviation is .5."""
+"""Searches at most, each from the end of the one before, and gain in likelihood for another one: a deviation is .5.
+Where all lacks have come to half of NARROW there is no valley to leave."""
 
 HELD_OUT = 0.25
 """Share of the recording, its end, on which the fit is judged; for this the parameters are found without it."""
@@ -146,7 +148,8 @@ def identify(
     found = fit(predictor, start, more, log)
     measured = drive.T_load is not None
     log("judging it by data that were not used")
-    quality = judged(predictor, found)
+    quality, second = judged(predictor, found)
+    found, apart = found.confirmed(second)
     at = drive.longest
     valid, omega_2 = recording.valid, found.predicted.states[at.start : at.stop - 1, 1]
     wheel_speed = late_wheel_speed(recording.omega_2[at], None if valid is None else valid[at], omega_2, drive.T_s)
@@ -159,6 +162,7 @@ def identify(
         *diagnose_parameters(found),
         *(diagnose_model(found, quality.T_load) if measured else ()),
         *diagnose_excitation(found),
+        *diagnose_second(apart, second),
     )
     name = WITH_LOAD if measured else WITHOUT_LOAD
     answers = loop if loop and loop.answers else None
@@ -190,6 +194,8 @@ def fit(predictor: Predictor, start: Parameters, more: Sequence[str] = (), log: 
     log(f"a wide filter finds {_shown(p)}")
     best = search(predictor, p, free, start)
     for _ in range(ROUNDS - 1):
+        if all(getattr(best.p, name) <= 0.5 * lack for name, lack in NARROW.items() if name in free):
+            break
         again = search(predictor, best.p._replace(**NARROW), free, start)
         gain = best.predicted.cost - again.predicted.cost
         best = again if gain > 0.0 else best
@@ -199,8 +205,8 @@ def fit(predictor: Predictor, start: Parameters, more: Sequence[str] = (), log: 
     return best
 
 
-def judged(predictor: Predictor, found: Found) -> Quality:
-    """The fit without the last quarter, on it."""
+def judged(predictor: Predictor, found: Found) -> tuple[Quality, Parameters]:
+    """The fit without the last quarter, on it, and what is found so."""
     cut = round((1.0 - HELD_OUT) * len(predictor.drive))
     p = search(predictor.of(predictor.drive.between(0, cut)), found.p, found.free, found.centre, most=6).p
     predicted = predictor.predicted(p)
@@ -210,7 +216,7 @@ def judged(predictor: Predictor, found: Found) -> Quality:
     T_load = np.nan if load is None else nrmse(p.g_L * runs[..., 3] - load[at], load[at], centred=True)
     size_1, size_L = np.sqrt(np.mean(size**2, axis=1))
     omega_1 = predictor.drive.omega_1[at]
-    return Quality(nrmse(runs[..., 0] - omega_1, omega_1), T_load, float(size_1), float(size_L))
+    return Quality(nrmse(runs[..., 0] - omega_1, omega_1), T_load, float(size_1), float(size_L)), p
 
 
 def nrmse(error: np.ndarray, signal: np.ndarray, centred: bool = False) -> float:

@@ -115,6 +115,7 @@ class FittedLoop:
     Attributes:
         loop: with which the recorded torque is met best.
         deviations: standard deviation of each of its parameters, in its unit.
+        lag: standard deviation in s of its whole lag, delay + sqrt(2) tau, of which less is known of either.
         noise: of the recorded torque, rms, in N.m.
         explained: share of the power of the recorded torque.
         torque: of the loop at each sample in N.m, as it is recorded, without noise.
@@ -127,6 +128,7 @@ class FittedLoop:
     explained: float
     torque: np.ndarray
     met: np.ndarray
+    lag: float = 0.0
 
     @property
     def answers(self) -> bool:
@@ -174,9 +176,10 @@ def fitted(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float) -> FittedLoop:
     met = uniform_filter1d(off, max(round(AROUND / T_s), 3)) < (MET * noise) ** 2
     met[: at.start] = False
     rms = float(np.sqrt(off[at][met[at]].mean() if met[at].any() else off[at].mean()))
-    deviations = rms * np.linalg.norm(np.linalg.pinv(loop.derivatives(T_ref, T_s)[at]), axis=1)
-    deviations = dict(zip(PARAMETERS, map(float, deviations), strict=True))
-    return FittedLoop(loop, deviations, rms, 1.0 - float(off[at].mean() / np.var(T)), torque, met)
+    inverse = rms * np.linalg.pinv(loop.derivatives(T_ref, T_s)[at])
+    deviations = dict(zip(PARAMETERS, map(float, np.linalg.norm(inverse, axis=1)), strict=True))
+    lag = float(np.linalg.norm(SQRT_2 * inverse[PARAMETERS.index("tau")] + inverse[PARAMETERS.index("delay")]))
+    return FittedLoop(loop, deviations, rms, 1.0 - float(off[at].mean() / np.var(T)), torque, met, lag)
 
 
 def _nearest_delay(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float, at: slice) -> float:

@@ -60,7 +60,7 @@ def covered(amplitude: float = 30.0, skewed: bool = False, **off: float) -> Cove
     true = {"J_2": 0.3, "C": 100.0, "phi_B": 0.1, "late_T": 0.0, "late_L": 0.0}
     deviations = {"J_2": 0.003, "C": 0.1, "phi_B": 1e-4, "late_T": 1e-4, "late_L": 1e-4}
     bound = {name: deviation / 1.25 for name, deviation in deviations.items()}
-    return Covered(amplitude, skewed, dict.fromkeys(true, 0.0) | off, true, deviations, bound, 5.0)
+    return Covered(amplitude, skewed, dict.fromkeys(true, 0.0) | off, true, deviations, bound)
 
 
 def test_coverage_is_told_by_amplitude_and_skew_and_for_all() -> None:
@@ -91,10 +91,9 @@ def test_a_wrong_J_1_is_only_passed_if_it_is_named() -> None:
     assert row(_traps(every), TRAPS[k].name)[1:4] == ["0", "0", "0"]
 
 
-def test_the_vehicle_is_told_with_and_without_load() -> None:
-    one = Judged(with_values(d=0.3), 0.7, (1.0, 1.02))
+def test_a_detailed_car_is_told_against_the_truth() -> None:
+    one = Judged(with_values(d=0.3), 1.02, 8.0, 0.7, (1.0, 1.02))
     alone = replace(one, answer=replace(one.answer, quality={"omega_1": 80.0, "T_load": float("nan")}))
-    table = _vehicle([one, one], [alone, alone])
-    assert row(table, "simulated 0.5 s: motor speed, %")[2:] == ["95", "80"]
-    assert row(table, "simulated 0.5 s: load torque, %")[2:] == ["90", "-"]
-    assert row(table, "overshoot with its gains, over that with those of the true car")[2] == "1.02"
+    table = _vehicle({"default": one, "no load torque": alone})
+    assert row(table, "default")[1:6] == ["+2.00 +- 0.20", "-1.25", "1", "1.02", "0.7"]
+    assert [row(table, name)[9:11] for name in ("default", "no load torque")] == [["95", "90"], ["80", "-"]]

@@ -11,6 +11,7 @@ from driveline.harness.identification.estimator import (
     HESITATES,
     UNTOLD,
     WINDOW,
+    Z_95,
     Found,
     search,
 )
@@ -95,6 +96,22 @@ def test_the_deviations_are_those_of_the_likelihood_or_of_the_scatter_of_windows
     widened = list(of(information, together).deviations.values())
     np.testing.assert_allclose(widened, likelihood * [1.0, np.sqrt(length)], rtol=0.15)
     np.testing.assert_allclose(list(of(information, 0.1 * white).deviations.values()), likelihood, rtol=1e-4)
+
+
+def test_what_else_a_parameter_is_off_by_adds_to_its_deviation() -> None:
+    information, scores = np.array([np.diag([1e4, 0.0]), np.diag([0.0, 1e4])]), np.zeros((500, 2))
+    alone, more = (replace(of(information, scores), off=off).deviations for off in ({}, {"C": 2.0}))
+    assert more == pytest.approx({"J_2": alone["J_2"], "C": np.hypot(alone["C"], 2.0)})
+
+
+@pytest.mark.parametrize(("away", "widened"), [(0.999, False), (1.001, True), (-3.0, True)])
+def test_an_interval_covers_a_second_estimate(away: float, widened: bool) -> None:
+    one = of(np.array([np.diag([1e4, 0.0]), np.diag([0.0, 1e4])]), np.zeros((500, 2)))
+    half = Z_95 * one.deviations["C"]
+    both, apart = one.confirmed(P._replace(C=P.C + away * half))
+    assert apart == (["C"] if widened else [])
+    assert Z_95 * both.deviations["C"] == pytest.approx(half * max(abs(away), 1.0))
+    assert both.deviations["J_2"] == one.deviations["J_2"]
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.99, "load torque"), (1.01, "")])

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import minimum_filter1d
 
 from driveline.harness.identification.drive_train import STEPS
 from driveline.harness.identification.identify import of_sensors
@@ -62,6 +63,26 @@ def test_where_the_demand_explains_the_torque_it_has_no_noise_and_elsewhere_it_i
     assert drive.exact[100:].mean() > 0.9
     assert np.abs(drive.T_mot - exact)[drive.exact].max() < MET * 0.3
     assert of_sensors(drive, given.T_mot).T_mot == pytest.approx(0.3, rel=0.1)
+
+
+@pytest.mark.parametrize("late", [0.0, 0.001, -0.0007])
+def test_the_torque_of_the_demand_is_known_between_the_samples(late: float) -> None:
+    """To a third of its noise, where a spline through the samples misses by its noise."""
+    time = T_S * np.arange(1500)
+    demand = 10.0 + 30.0 * np.sign(np.sin(20.0 * time + 0.1))
+    noise = 0.3 * np.random.default_rng(1).standard_normal(len(time))
+    T_mot = TorqueLoop(0.004).torque(demand, T_S)
+    drive, loop = drive_of(replace(recording(time, demand), T_mot=T_mot + noise))
+    assert loop is not None
+    assert drive.exact is not None
+    parts = T_S * (np.arange(STEPS) + 0.5) / STEPS + late
+    true = np.column_stack([replace(loop.loop, delay=loop.loop.delay - by).torque(demand, T_S) for by in parts])[:-1]
+    at = np.flatnonzero(minimum_filter1d(drive.exact, 7)[:-1])
+    assert np.abs(drive.torque(late) - true)[at].max() < 0.1
+    by_samples = np.abs(replace(drive, fine=None).torque(late) - true)[at].max()
+    assert by_samples > 0.3
+    part = drive.between(100, 900)
+    np.testing.assert_allclose(part.torque(late)[20:-20], drive.torque(late)[120:880], atol=1e-4)
 
 
 @pytest.mark.parametrize(("share", "used"), [(0.89, False), (0.91, True)])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from driveline.harness.identification.torque_loop import PARAMETERS, FittedLoop, TorqueLoop, fitted
+from driveline.harness.identification.torque_loop import PARAMETERS, SQRT_2, FittedLoop, TorqueLoop, fitted
 from driveline.harness.manoeuvres.prbs import binary_torque, shift_register
 from driveline.harness.recordings.source import RecordingError
 from driveline.harness.simulation.simulate import simulate
@@ -70,6 +70,9 @@ def test_the_lag_is_found_to_four_thousandths_and_its_interval_covers() -> None:
     for name in PARAMETERS:
         covered = [abs(getattr(f.loop, name) - getattr(LOOP, name)) < 1.96 * f.deviations[name] for f in found]
         assert 0.89 <= np.mean(covered), f"{name}: 95 %, of 100 runs"
+    lag = np.array([one.loop.delay + SQRT_2 * one.loop.tau for one in found])
+    assert lag.std() == pytest.approx(np.mean([one.lag for one in found]), rel=0.2)
+    assert lag.std() < 0.5 * np.std([one.loop.delay for one in found]), "of which less is known of either"
     assert np.mean([one.noise for one in found]) == pytest.approx(NOISE, rel=0.01)
 
 
