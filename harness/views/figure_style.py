@@ -44,6 +44,8 @@ METADATA = {
 }
 """What matplotlib would say of date and origin, by the kind of file: nothing."""
 
+DPI = 200
+
 CAPTION_SIZE = 7.5
 """In points."""
 
@@ -81,7 +83,7 @@ def sheet(
     files: list[Path] = []
     with style.context(STYLE):
         layout = ConstrainedLayoutEngine(h_pad=pads[0], w_pad=pads[1])
-        figure = Figure(figsize=size, layout=layout) if options.kinds else _on_screen(size, layout)
+        figure = Figure(figsize=size, dpi=DPI, layout=layout) if options.kinds else _on_screen(size, layout)
         yield figure, files
         figure.align_ylabels()
         titled(figure, title, options.caption, title_size)
@@ -261,6 +263,12 @@ def matrix_axes(axes: Axes, columns: Sequence[str], rows: Sequence[str], title: 
     axes.set_title(title)
 
 
+def in_cell(axes: Axes, column: int, row: int, text: str, colour: str, size: float = 6.0) -> None:
+    """Text in a cell of `matrix_axes`, which it does not leave: the layout need not ask for it."""
+    at = column + 0.5, row + 0.5
+    axes.text(*at, text, ha="center", va="center", fontsize=size, color=colour).set_in_layout(False)
+
+
 def legend(axes: Axes, columns: int = 5) -> None:
     """A legend above the axes, where it covers no curve."""
     made = axes.legend(
@@ -276,9 +284,13 @@ def legend(axes: Axes, columns: int = 5) -> None:
 
 def save(figure: Figure, stem: Path, kinds: Sequence[str] = USUAL_KINDS) -> list[Path]:
     """Writes a figure in files of these kinds (`harness.views.figure_options.KINDS`), without a date; returns them."""
-    files = []
+    files, layout = [], figure.get_layout_engine()
     for kind in kinds:
+        if kind == "png" and layout:  # whose resolution is that of the figure: it need not be drawn to be laid out
+            layout.execute(figure)
+            figure.set_layout_engine("none")
         files.append(stem.with_name(f"{stem.name}.{kind}"))
         with complete(files[-1]) as unfinished:
-            figure.savefig(unfinished, dpi=200, format=kind, metadata=METADATA[kind])
+            figure.savefig(unfinished, dpi=DPI, format=kind, metadata=METADATA[kind])
+        figure.set_layout_engine(layout)
     return files

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ....models.controller.causes import OUTPUT
 from ...views.colours import BLACK, BLUE, GREY, VERMILION
 from ...views.figure_options import FigureOptions
-from ...views.figure_style import matrix_axes, plot, sheet
+from ...views.figure_style import in_cell, matrix_axes, plot, sheet
 from ...views.panels import Axis, Curve, Panel, Spans
 from .fault_campaign import Outcome, count, plan_of
 from .fault_cases import Case, Plan
@@ -86,7 +86,7 @@ def _draw_cells(axes: Axes, heading: str, columns: Sequence[str], rows: Sequence
     shares = np.ma.masked_where(total == 0, failed / np.maximum(total, 1))
     axes.pcolormesh(shares, cmap=SHARES, vmin=0.0, vmax=1.0, edgecolors="white", linewidth=0.8)
     for row, column in zip(*np.nonzero(failed), strict=True):
-        axes.text(column + 0.5, row + 0.5, f"{failed[row, column]:.0f}", ha="center", va="center", fontsize=6.5)
+        in_cell(axes, column, row, f"{failed[row, column]:.0f}", "black", 6.5)
     matrix_axes(axes, columns, rows, heading)
 
 

@@ -87,16 +87,11 @@ def plot_poles(found: Mapping[str, Mapping[str, Sequence[Swept]]], title: str, s
         for k, (plant, by_sweep) in enumerate(found.items()):
             for axes, sweep in zip(grid[k], SWEEPS, strict=True):
                 scale = (LogNorm if sweep.factor else Normalize)(min(sweep.values), max(sweep.values))
-                for each in by_sweep[sweep.name]:
-                    colours = np.full(len(each.poles), each.value)
-                    shown = axes.scatter(
-                        np.real(each.poles),
-                        np.imag(each.poles) / (2.0 * np.pi),
-                        c=colours,
-                        norm=scale,
-                        cmap="viridis",
-                        s=10,
-                    )
+                its = by_sweep[sweep.name]
+                poles = np.concatenate([each.poles for each in its])
+                values = np.repeat([each.value for each in its], [len(each.poles) for each in its])
+                y = np.imag(poles) / (2.0 * np.pi)
+                shown = axes.scatter(np.real(poles), y, c=values, norm=scale, cmap="viridis", s=10)
                 _rays(axes)
                 axes.set(xlim=(-150.0, 15.0), ylim=(0.0, 45.0))
                 if k == 0:

@@ -13,7 +13,7 @@ from ....models.block.declaration import Real, variables
 from ...design.design_trials import loop_records
 from ...metrics.declaration import declared
 from ...metrics.run_metrics import Metrics
-from ...views.figure_style import matrix_axes, sheet
+from ...views.figure_style import in_cell, matrix_axes, sheet
 
 CHANGE = 0.1
 """By what share of itself each parameter is larger and smaller."""
@@ -107,9 +107,7 @@ def plot_sensitivity(found: Sequence[Sensitivity], title: str, stem: Path) -> li
             for (row, column), value in np.ndenumerate(np.array(cells)):
                 if abs(value) >= 0.05:
                     colour = "white" if abs(value) > 0.7 * SCALE else "black"
-                    axes.text(
-                        column + 0.5, row + 0.5, f"{value:.1f}", ha="center", va="center", fontsize=6, color=colour
-                    )
+                    in_cell(axes, column, row, f"{value:.1f}", colour)
             matrix_axes(axes, columns, rows, f"{plant}\n{manoeuvre}")
         figure.colorbar(shown, ax=list(grid), label="change of the metric in % for 1 % of the parameter", shrink=0.7)
     return files
