@@ -4,6 +4,7 @@ import ast
 import importlib
 import inspect
 import os
+import pydoc
 import re
 import subprocess
 import sys
@@ -55,6 +56,13 @@ def test_a_name_is_what_its_module_has_and_dir_gives_them() -> None:
         driveline.simulat  # type: ignore[attr-defined]  # noqa: B018
     with pytest.raises(AttributeError, match=r"has no attribute 'zzz'$"):
         driveline.zzz  # type: ignore[attr-defined]  # noqa: B018
+
+
+def test_help_is_a_page_that_has_every_public_name_and_nothing_of_the_checkout() -> None:
+    text = pydoc.plain(pydoc.render_doc(driveline))
+    assert len(text.splitlines()) < 80
+    assert set(DECLARED) <= set(text.split())
+    assert not {"setup", "tests", "benchmarks", "harness", "models"} & set(text.split())
 
 
 def test_a_manoeuvre_that_is_not_known_names_what_is_near() -> None:

@@ -11,7 +11,7 @@ from ..cosimulation.interface import Interface, unit_of
 from ..cosimulation.system import System
 from ..cosimulation.wiring import fit, out_of_bounds, require
 from .built_fmus import built
-from .places import PLANTS
+from .places import PLANTS, ROAD_LOAD
 from .settings import Settings, loop
 
 LOG = logging.getLogger(__name__)
@@ -84,7 +84,7 @@ def _of_files(
         if lacking := sorted(of_plants() & values.keys() - names["plant"]):
             LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
         usual = FMUS[PLANTS[0]].block.Parameters._field_defaults
-        car = {name: values.get(name, usual[name]) for name in sorted(of_plants() - names["plant"])}
+        car = {name: values.get(name, usual[name]) for name in ROAD_LOAD if name not in names["plant"]}
     require(
         problem
         for instance, interface in interfaces.items()

@@ -83,6 +83,9 @@ OUTPUTS = (
     Port("plant.a_body", "m/s2"),
 )
 
+ROAD_LOAD = ("i", "r", "m", "g", "c_rr", "c_wa")
+"""What the balance of forces along the road needs to know of a car: parameters of the plant."""
+
 OPTIONAL: Mapping[str, float | None] = {
     "controller.enable": True,
     "controller.T_mot_est": None,

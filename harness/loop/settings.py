@@ -163,16 +163,24 @@ def running(made: Settings) -> Settings:
     """The settings as they run: without damping, NoDamping stands in the place of a controller that has no `enable`."""
     if made.control or str(made.controller) in PLACES["controller"]:
         return made
-    from ..cosimulation.interface import Interface  # who asks for help alone needs no fmpy
-
-    enable = made.mapping.get("controller.enable", "enable")
-    if enable in Interface(_file("controller", made.controller, made.folder), made.limits).variables:
+    path = Path(made.controller)
+    state = path.stat() if path.is_file() else None
+    written = state and (state.st_mtime_ns, state.st_size)
+    if _has(path, made.mapping.get("controller.enable", "enable"), made.limits, written):
         return made
     others = {
         name: {key: value for key, value in getattr(made, name).items() if not key.startswith("controller.")}
         for name in ("parameters", "mapping")
     }
     return dataclasses.replace(made, controller=NO_DAMPING, **others)
+
+
+@lru_cache(64)  # every run asks more than once
+def _has(path: Path, variable: str, limits: Limits, written: object) -> bool:
+    """Whether an FMU that was `written` so has a variable."""
+    from ..cosimulation.description import read  # who asks for help alone needs no fmpy
+
+    return any(each.name == variable for each in read(path, limits).modelVariables)
 
 
 def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> System:

@@ -1,7 +1,7 @@
 """A recorded drive on even samples, and what the balance of forces along the road knows of a vehicle."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import inf
 from typing import Self
 
@@ -11,6 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..base.errors import WiringError
 from ..cosimulation.interface import Interface
+from ..loop.places import ROAD_LOAD
 from ..recordings.drive import Drive
 
 ROTATING_MASS = 1.09
@@ -55,14 +56,13 @@ class RoadLoad:
         }
         starts = {**(car or {}), **starts}
         starts |= {name.removeprefix("plant."): value for name, value in (parameters or {}).items()}
-        names = [field.name for field in fields(cls)]
-        missing = [name for name in names if name not in starts]
+        missing = [name for name in ROAD_LOAD if name not in starts]
         if missing:
             raise WiringError(
-                f"{plant.path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(names)} "
+                f"{plant.path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(ROAD_LOAD)} "
                 f"of the vehicle to work out the brakes; the file of --vehicle may tell them"
             )
-        return cls(*(starts[name] for name in names))
+        return cls(**{name: starts[name] for name in ROAD_LOAD})
 
     @property
     def inertia(self) -> float:
