@@ -11,12 +11,11 @@ from pathlib import Path
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.design.design import design
 from driveline.harness.design.design_trials import Gains, Trial, measured, own_gains
-from driveline.harness.design.design_weights import records
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.simulation.many_runs import run_many
-from driveline.harness.studies.margins.modes import swing
+from driveline.harness.studies.margins.car_properties import swing
 
 from .data_file import ROOT
 from .study import Cell, Column, Measured, Study, Table, cell
@@ -35,12 +34,12 @@ MODES = (
 
 
 def modes_table(cars: Iterable[str]) -> Table:
-    """The drive trains in contact, linear and without tyre."""
+    """The drive trains of the design model, as `driveline car` tells them."""
 
     def modes(vehicle: Path | None) -> tuple[Cell, ...]:
-        plant, motor, _ = records(read_vehicle(vehicle) if vehicle else {})
-        alone, damped = swing(plant, motor, own_gains(vehicle))
-        return alone.frequency, swing(plant, motor, design())[1].damping_ratio, damped.damping_ratio
+        entries = read_vehicle(vehicle) if vehicle else {}
+        usual, own = (swing(PLANTS[0], entries, gains) for gains in (design(), own_gains(vehicle)))
+        return own.frequency, *(each.damped.damping_ratio if each.damped else None for each in (usual, own))
 
     return Table("car", MODES, {name: modes(CARS[name]) for name in cars})
 

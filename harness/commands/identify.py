@@ -12,11 +12,15 @@ and the result is called effective. The fit is judged on the last quarter, with 
 likely to be wrong with the recording, or is not told by it, is said. A stiffness that is known to no better than
 +- 50 % makes no vehicle file, and a gap that is known no better stays as it was; docs/identification.md tells more.
 
+With --step the recording of one tip-in or let-off without control is enough, for C and, if the torque changes its
+sign, phi_B: what else is known of the car is that of the vehicle file.
+
 examples:
   driveline record && driveline identify results/record/TwoMassDriveline_prbs_off.csv --output car.toml
   driveline identify drive.mf4 --vehicle examples/cars/van.toml --output my_van.toml
   driveline identify drive.csv --free J_1 --column T_mot='M_em [Nm]'
   driveline identify drive.blf --dbc drive_train.dbc --design
+  driveline identify tip_in.csv --step --vehicle data_sheet.toml --output car.toml
 """
 
 import json
@@ -29,6 +33,7 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import DrivelineError
 from ..base.optional_packages import required
 from .arguments import option
+from .identify_step import run_step
 from .jobs import job
 from .options import Figures, Replacing, Report, file_of, record
 from .printing import Printing
@@ -55,6 +60,7 @@ class Arguments(Recorded, Figures, Replacing, Report, Printing):
     output: Path | None = option(
         None, "the vehicle file (default: results/identify/RECORDING_car.toml)", Path, metavar="FILE.toml"
     )
+    step: bool = option(False, "identify C and phi_B from one step of the torque")
     design: bool = option(False, "compute gains for this car, build the controller, compare on both plants")
 
 
@@ -69,6 +75,8 @@ def run(args: Arguments) -> int:
     require_possible(output)
     plant, _, _ = records(vehicle)
     recording = read_measurement(args.recording, plant.i, plant.r, **args.as_read)
+    if args.step:
+        return run_step(args, recording, vehicle, output)
     options = args.options("", (recording.name, float(recording.time[0]), float(recording.time[-1])))
     required("casadi", "identifying a model", "identification")
     from ..identification import car_file, identification_report_html

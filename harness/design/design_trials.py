@@ -96,8 +96,9 @@ def measured(trial: Trial, seeds: tuple[int, ...] = (1, 2, 3), settings: Setting
     Args:
         settings: of the runs beside what the trial says.
     """
-    manoeuvre, control = MANOEUVRES[trial.manoeuvre], trial.gains is not Gains.NONE
-    made = settings_of(settings, plant=trial.plant, control=control, parameters=parameters(trial))
+    given, control = parameters(trial), trial.gains is not Gains.NONE
+    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], given)
+    made = settings_of(settings, plant=trial.plant, control=control, parameters=given)
     return mean([evaluate(simulate(manoeuvre, made, seed=seed), manoeuvre) for seed in seeds])
 
 

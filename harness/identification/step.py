@@ -1,0 +1,231 @@
+"""C and phi_B from the recording of one tip-in or let-off without control: both plants are driven by the recorded
+torque of the motor, and the car is looked for whose motor speed is the recorded one.
+
+    |omega_1 - recorded|^2/noise^2 + sum of (ln(p/known)/spread)^2  is least
+
+What is known of the car only roughly is free too, with a spread: C and phi_B are as sure as all of that lets them be.
+The validation vehicle stands for a car, the design model for recordings that were simulated with it; what predicts
+better is taken. What it does not explain beyond the noise may be as wrong as the answers of the two differ.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+from math import hypot, log, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ...fmus.building.one_car import DAMPERS, DEFAULT_CAR, FOLLOW, of_one_car, with_estimates
+from ...fmus.catalogue import EVERY
+from ...fmus.errors import ParameterFileError
+from ..cosimulation.experiment import Experiment
+from ..cosimulation.runs import kept_loaded, run
+from ..cosimulation.system import Port, System
+from ..loop.places import PLANTS
+from ..loop.settings import Settings, loop
+from ..recordings.measurement import Measurement
+from ..recordings.source import RecordingError
+from .estimator import Z_95
+from .noise import white_noise
+
+
+class Spread(NamedTuple):
+    """What is searched: by its logarithm, or as it is.
+
+    Attributes:
+        known: standard deviation of what is known before, of the logarithm or in its unit.
+    """
+
+    known: float
+    logarithm: bool = True
+
+
+SEARCHED: Mapping[str, Spread] = {
+    "C": Spread(1.0),
+    "phi_B": Spread(1.5),
+    "J_2": Spread(0.5),
+    "c_slip": Spread(0.3),
+    "damping": Spread(0.7),
+    "g_T": Spread(0.02),
+    "slope": Spread(0.02, logarithm=False),
+    "v_0": Spread(0.005),
+}
+"""Entries of a vehicle file; a factor on the dampers; gain of the recorded torque; the road in rad; a factor on the
+speed at the beginning."""
+
+STIFFNESSES, GAPS = (0.4, 0.6, 0.85, 1.2, 1.7, 2.4), (0.25, 0.7, 2.0)
+"""Factors on what is known, from which the search begins."""
+
+BEFORE, AFTER = 0.2, 1.0
+"""Time in s from the step that is looked at."""
+
+STEP_SIZE = 1e-3
+
+CORRELATED = 0.1
+"""Time in s of a window beyond which errors of the model no longer go together."""
+
+EXPLAINED = 1.1
+"""Error over the noise up to which a model explains a recording."""
+
+UNLIKE = 1.4
+"""How wrong what is not explained makes the answer, over how far the answers of both plants are apart: drawn cars whose
+mounts, hubs and body are others than those of their vehicle file are within."""
+
+APART = {"C": 0.08, "phi_B": 0.3}
+"""How far the answers are apart at the least, of usual cars."""
+
+LEAST = {"C": 0.01, "phi_B": 0.05}
+"""Of the halves, for the noise of the torque, which acts on the car and is not that of the speed."""
+
+
+class Tip(NamedTuple):
+    """A step of the torque as it was recorded.
+
+    Attributes:
+        time: in s from the beginning on, STEP_SIZE apart.
+        T_mot: in N.m, in the middle of the steps that begin there.
+        at: instants of the samples of the motor speed.
+        omega_1: in rad/s.
+        T_0, v_0: torque in N.m and motor speed in rad/s at the beginning.
+        reversal: whether the torque changes its sign.
+    """
+
+    time: np.ndarray
+    T_mot: np.ndarray
+    at: np.ndarray
+    omega_1: np.ndarray
+    T_0: float
+    omega_0: float
+    reversal: bool
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a step tells.
+
+    Attributes:
+        plant: that predicts the motor speed best.
+        values: of C in N.m/rad and, where the torque changes its sign, phi_B in rad.
+        halves: of their 95 % intervals, in the logarithm.
+        error: rms of what is not predicted of the motor speed, in rad/s.
+        noise: of the motor speed before the step, in rad/s: that of its sensor, and ripple.
+    """
+
+    plant: str
+    values: Mapping[str, float]
+    halves: Mapping[str, float]
+    error: float
+    noise: float
+
+
+def tip(recording: Measurement) -> Tip:
+    """The largest step of a recording.
+
+    Raises:
+        RecordingError: there is none that can be used.
+    """
+    t, T = recording.time, recording.T_mot
+    T_s = float(np.median(np.diff(t)))
+    span = max(round(0.05 / T_s), 2)
+    change = np.abs(T[span:] - T[:-span])
+    k = int(change.argmax()) + span // 2
+    first, last = np.searchsorted(t, [t[k] - BEFORE, t[k] + AFTER])
+    if t[k] - t[0] < BEFORE or t[-1] - t[k] < 0.5 * AFTER:
+        raise RecordingError(
+            f"{recording.name}: the step at {t[k]:.3g} s needs {BEFORE:g} s before it and {0.5 * AFTER:g} s after it"
+        )
+    t, T, omega = t[first:last], T[first:last], recording.omega_1[first:last]
+    steady = t < t[0] + 0.5 * BEFORE
+    T_0, omega_0 = float(T[steady].mean()), float(omega[steady].mean())
+    after = float(np.median(T[t > t[0] + BEFORE + 0.1]))
+    if abs(after - T_0) < 10.0 * white_noise(recording.T_mot):
+        raise RecordingError(f"{recording.name}: the torque has no step beyond its noise")
+    time = np.arange(0.0, t[-1] - t[0], STEP_SIZE)
+    T_mot = np.interp(time + 0.5 * STEP_SIZE, t - t[0], T)
+    return Tip(time, T_mot, t - t[0], omega, T_0, omega_0, T_0 * after < 0.0)
+
+
+def identify_step(recording: Measurement, vehicle: Mapping[str, Any], settings: Settings) -> Step:
+    """
+    Args:
+        vehicle: entries of the vehicle file as the car is known.
+        settings: whose plants are driven.
+
+    Raises:
+        RecordingError: it has no step that can be used.
+    """
+    step = tip(recording)
+    quiet = step.at < BEFORE
+    before = step.at[quiet], step.omega_1[quiet]
+    noise = float(np.std(before[1] - np.polyval(np.polyfit(*before, 2), before[0])))
+    with kept_loaded():
+        fits = [_fitted(plant, step, noise, vehicle, settings) for plant in PLANTS]
+    best, other = sorted(fits, key=lambda found: found.error)
+    unexplained = sqrt(max(1.0 - (EXPLAINED * noise / best.error) ** 2, 0.0))
+    apart = {name: max(abs(log(other.values[name] / value)), APART[name]) for name, value in best.values.items()}
+    unlike = {name: hypot(LEAST[name], UNLIKE * unexplained * apart[name]) for name in apart}
+    return replace(best, halves={name: hypot(half, unlike[name]) for name, half in best.halves.items()})
+
+
+def _fitted(plant: str, step: Tip, noise: float, vehicle: Mapping[str, Any], settings: Settings) -> Step:
+    system, known = _plant(settings.replace(plant=plant)), {**with_estimates(vehicle)}
+    known.pop("frequency", None)
+    names = [name for name in SEARCHED if name != "damping" or plant != PLANTS[0]]
+    names = [name for name in names if name != "phi_B" or step.reversal]
+    spread = np.array([SEARCHED[name].known for name in names])
+    size = noise
+
+    def error(x: np.ndarray) -> np.ndarray:
+        """Over the noise, then what is known before."""
+        try:
+            omega_1 = _driven(system, plant, step, known, dict(zip(names, x.tolist(), strict=True)))
+        except ParameterFileError:
+            return np.full(len(step.omega_1) + len(x), 1e3)
+        return np.concatenate([(omega_1 - step.omega_1) / size, x / spread])
+
+    def start(C: float, phi_B: float) -> np.ndarray:
+        return np.array([np.log({"C": C, "phi_B": phi_B}.get(name, 1.0)) for name in names])
+
+    begin = min((start(*factors) for factors in product(STIFFNESSES, GAPS)), key=lambda x: float(error(x) @ error(x)))
+    for _ in range(2):
+        found = least_squares(error, begin, diff_step=1e-3, x_scale=np.minimum(spread, 0.3), max_nfev=12)
+        begin, n = found.x, len(step.omega_1)
+        rms = float(np.sqrt(np.mean((found.fun[:n] * size) ** 2)))
+        size = max(noise, rms)  # what the model does not explain counts as noise from now on
+    J, r = found.jac[:n], found.fun[:n]
+    H = np.linalg.inv(found.jac.T @ found.jac)
+    windows = max(round(float(step.at[-1]) / CORRELATED), 2)
+    scores = np.array([part.sum(axis=0) for part in np.array_split(J * r[:, None], windows)])
+    sandwich = H @ (scores.T @ scores) @ H
+    deviations = np.sqrt(np.maximum(np.diag(H), np.diag(sandwich)))
+    at = {name: names.index(name) for name in ("C", "phi_B") if name in names}
+    values = {name: known[name] * float(np.exp(found.x[k])) for name, k in at.items()}
+    halves = {name: Z_95 * float(deviations[k]) for name, k in at.items()}
+    return Step(plant, values, halves, rms, noise)
+
+
+def _plant(settings: Settings) -> System:
+    """The plant alone."""
+    whole = loop(settings)
+    inputs = tuple(
+        Port(f"plant.{name}", unit) for name, unit in (("T_mot", "N.m"), ("T_brake", "N.m"), ("slope", "rad"))
+    )
+    return System(
+        {"plant": whole.instances["plant"]}, inputs=inputs, outputs=(Port("plant.omega_1", "rad/s"),), own=whole.own
+    )
+
+
+def _driven(system: System, plant: str, step: Tip, known: Mapping[str, Any], moved: Mapping[str, float]) -> np.ndarray:
+    """Motor speed in rad/s at the samples, of a car that is moved from what is known."""
+    by = {name: float(np.exp(value)) for name, value in moved.items()}
+    car = {**known, **{name: known.get(name, DEFAULT_CAR[name]) * by[name] for name in by if name in DEFAULT_CAR}}
+    full = {**DEFAULT_CAR, **of_one_car(car, FOLLOW)}
+    full |= {name: full[name] * by.get("damping", 1.0) for name in DAMPERS}
+    full |= {"v_0": by["v_0"] * step.omega_0 * full["r"] / full["i"], "T_0": step.T_0 / by["g_T"]}
+    parameters = {f"plant.{name}": full[name] for name in EVERY[plant].block.Parameters._fields if name in full}
+    inputs = {"plant.T_mot": step.T_mot / by["g_T"], "plant.T_brake": 0.0, "plant.slope": moved["slope"]}
+    experiment = Experiment(float(step.time[-1]), STEP_SIZE, inputs, parameters)
+    results = run(system, experiment)
+    return np.interp(step.at, results["time"], results["plant.omega_1"])
