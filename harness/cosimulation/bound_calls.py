@@ -37,20 +37,23 @@ def wired(
     scheme: Scheme,
     step_size: c_double,
     make_steps: MakeSteps,
+    every: Mapping[str, int] | None = None,
 ) -> Wires:
     """Binds the FMUs to a row of memory.
 
     Args:
         inputs: `instance.variable` of those that are given from outside.
         step_size: communication step in s, as it is when the steps are made.
+        every: instances that make a step every so many steps.
 
     Raises:
         WiringError: the scheme does not suit the system.
     """
-    plan = schedule(scheme, fitted.system, fitted.interfaces)
+    every = every or {}
+    plan = schedule(scheme, fitted.system, fitted.interfaces, every)
     memory = _memory(Layout(fitted.interfaces, inputs), plan)
-    binding = _Binding(fitted, instances, inputs, step_size, memory)
-    begin, end = map(binding.calls, plan)
+    binding = _Binding(fitted, instances, inputs, step_size, memory, every)
+    begin, end = binding.calls(plan.begin), [call._replace(lead=1) for call in binding.calls(plan.end)]
     read = schedule(Scheme.GAUSS_SEIDEL, fitted.system, fitted.interfaces).begin
     hand_over = binding.calls(action for action in read if not isinstance(action, Step))
     steps = make_steps(begin, end, memory.row, memory.layout.known)
@@ -81,8 +84,15 @@ class _Binding:
     """Makes the calls of actions, which work on the memory."""
 
     def __init__(
-        self, fitted: Fit, instances: Sequence[Instance], inputs: Sequence[str], step_size: c_double, memory: _Memory
+        self,
+        fitted: Fit,
+        instances: Sequence[Instance],
+        inputs: Sequence[str],
+        step_size: c_double,
+        memory: _Memory,
+        every: Mapping[str, int],
     ) -> None:
+        self._every = every
         self._instances = {instance.name: instance for instance in instances}
         self._feeds = {target: source for source, target, _ in fitted.system.connections}
         self._step_size = step_size
@@ -93,7 +103,15 @@ class _Binding:
         }
 
     def calls(self, actions: Iterable[Action]) -> list[Call]:
-        return [call for action in actions for call in self._bound(action)]
+        """Those of actions; the step of an instance, and what comes after it, is counted by the end of the step."""
+        calls: list[Call] = []
+        stepped: set[str] = set()
+        for action in actions:
+            if isinstance(action, Step):
+                stepped.add(action.instance)
+            due = {"every": self._every.get(action.instance, 1), "lead": int(action.instance in stepped)}
+            calls += [call._replace(**due) for call in self._bound(action)]
+        return calls
 
     def _bound(self, action: Action) -> list[Call]:
         layout, row, rates = self._memory
@@ -103,7 +121,7 @@ class _Binding:
             case Set():
                 return self._sends[name]
             case Step():
-                return [advance(instance, row, self._step_size)]
+                return [advance(instance, row, self._step_size, self._every.get(name, 1))]
             case Get(_, outputs):
                 return receives(instance, row, layout, outputs)
             case GetRates(_, outputs, at_end):

@@ -38,6 +38,8 @@ class Call(NamedTuple):
         lines: along which inputs are set to move; once they do, what was sent before is forgotten.
         slopes: of these the slopes are set, not the starts.
         step_size: in s, of calls that depend on it.
+        every: it is made every so many steps.
+        lead: 1: these are counted by the end of the step, 0: by its beginning.
     """
 
     instance: Instance
@@ -55,6 +57,8 @@ class Call(NamedTuple):
     lines: Sequence[Line] = ()
     slopes: bool = False
     step_size: c_double | None = None
+    every: int = 1
+    lead: int = 0
 
 
 def sends(instance: Instance, sources: Mapping[str, str], row: bytearray, layout: Layout) -> list[Call]:
@@ -183,26 +187,44 @@ def _brought(call: Call, place: Any) -> Call:
     return call._replace(run=get, place=place)
 
 
-def advance(instance: Instance, row: bytearray, step_size: c_double) -> Call:
-    """The call that makes one communication step from the time in the row, of the size in s at that moment.
+def advance(instance: Instance, row: bytearray, step_size: c_double, every: int = 1) -> Call:
+    """The call that makes one communication step from the time in the row, of the size in s at that moment; one that is
+    so many steps long ends where that from the time in the row does.
 
     An FMU of FMI 3.0 that then asks for the end of the simulation has discarded the step, as one of FMI 2.0 does.
     """
-    time = c_double.from_buffer(row)
+    time, size = c_double.from_buffer(row), step_size
+    if every > 1:
+        time, size = c_double(), c_double()
     if instance.interface.fmi == 2:
-        step = partial(instance.function("fmi2DoStep"), instance.component, time, step_size, c_int(1))
-        return Call(instance, "fmi2DoStep", step, step_size=step_size)
+        step = partial(instance.function("fmi2DoStep"), instance.component, time, size, c_int(1))
+        call = Call(instance, "fmi2DoStep", step, step_size=step_size)
+        return call if every == 1 else _long(call, time, size, c_double.from_buffer(row), every)
     do_step = instance.function("fmi3DoStep")
     event, ended, early, reached = c_bool(), c_bool(), c_bool(), c_double()
     answers = byref(event), byref(ended), byref(early), byref(reached)
     component, keep = instance.component, c_bool(True)
 
     def run() -> int:
-        status = do_step(component, time, step_size, keep, *answers)
+        status = do_step(component, time, size, keep, *answers)
         instance.slave.ended = ended.value  # type: ignore[union-attr]  # it is one of FMI 3.0
         return fmi2Discard if ended.value and status in (fmi2OK, fmi2Warning) else status
 
-    return Call(instance, "fmi3DoStep", run, step_size=step_size)
+    call = Call(instance, "fmi3DoStep", run, step_size=step_size)
+    return call if every == 1 else _long(call, time, size, c_double.from_buffer(row), every)
+
+
+def _long(call: Call, begin: c_double, size: c_double, now: c_double, every: int) -> Call:
+    """The same over so many steps, the last of which begins now; steps.c computes it in the same way."""
+    assert call.step_size is not None
+    h = call.step_size
+
+    def run() -> int:
+        begin.value = (round(now.value / h.value) + 1.0 - every) * h.value
+        size.value = h.value * every
+        return call.run()
+
+    return call._replace(run=run)
 
 
 def _access(instance: Instance, verb: str, access: Access, variables: Sequence[ModelVariable], values: Any) -> Call:

@@ -98,6 +98,8 @@ class CompiledCall(Structure):
         ("orders", c_void_p),
         ("lines", c_void_p),
         ("slopes", c_int32),
+        ("every", c_int32),
+        ("lead", c_int32),
     )
 
 
@@ -166,6 +168,7 @@ def _address(number: c_double | None) -> int | None:
 def _record(call: Call, sources: Any, factors: Any, lines: Any) -> CompiledCall:
     record = CompiledCall(fmi=call.instance.interface.fmi, component=call.instance.component)
     record.instance, record.function = call.instance.number, NUMBERS[call.function]
+    record.every, record.lead = call.every, call.lead
     function = cast(call.instance.slave.dll[call.function], c_void_p)
     record.step_size = _address(call.step_size)
     if call.values is None:

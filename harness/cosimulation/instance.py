@@ -23,6 +23,7 @@ from fmpy.fmi2 import (
     fmi2Discard,
     fmi2Fatal,
     fmi2OK,
+    fmi2Pending,
     fmi2Terminated,
     fmi2Warning,
 )
@@ -280,7 +281,7 @@ class Instance:
         return SimulationError(
             f"{self.label} answered {f'{function} {when}'.strip()} with "
             f"{STATUS[status] if known else f'the status {status}, which FMI does not know'}: "
-            f"{plain('; '.join(logged)) or 'no message'}"
+            f"{plain('; '.join(logged)) or ('it works asynchronously' if status == fmi2Pending else 'no message')}"
         )
 
     def not_finite(self, names: Sequence[str], values: Sequence[float], when: str) -> SimulationError:

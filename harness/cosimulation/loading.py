@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 
 from ..base.collected_warnings import warn_once
+from ..base.errors import SimulationError
 from ..base.progress import progress
 from .compiled_steps import LIBRARY, CompiledSteps, why_not
 from .experiment import Experiment
 from .instance import label
 from .isolated_process import IsolatedProcess
-from .master import Loop, opened
+from .master import KEPT, Loop, opened
 from .results import Results
 from .row_layout import Layout
 from .schedule import described, transfers
@@ -56,11 +57,14 @@ class IsolatedLoop:
         with progress(len(time) - 1, experiment.label) as done:
             rows = self._isolated.fetch(size, _run, sent, watch=lambda now: done(round(now / experiment.step_size)))
         results = Results(np.frombuffer(rows, layout.recorded), layout.units)
-        if ended := self._isolated.ask(_ended):
-            count, text = ended
+        ended = self._isolated.ask(_ended)
+        try:
+            remarks = self._isolated.ask(_finish)
+        except SimulationError as error:
+            remarks = [f"{error}; {KEPT}"]
+        for text in remarks:
             LOG.warning(text)
-            return results[: int(count)]
-        return results
+        return results[: int(ended[0])] if ended else results
 
 
 @contextmanager
@@ -105,7 +109,10 @@ def _isolated(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterat
         isolated.ask(_load, fitted, make_steps)
         yield IsolatedLoop(isolated, fitted)
         if isolated.alive:
-            isolated.ask(_unload)
+            try:
+                isolated.ask(_unload)
+            except SimulationError as error:
+                LOG.warning(f"{error}; {KEPT}")
     finally:
         isolated.close()
 
@@ -127,15 +134,19 @@ def _reset() -> None:
 
 def _run(experiment: Experiment) -> memoryview:
     """All rows, of zeros behind the end."""
-    results = _loop.run(experiment)
+    results = _loop.rows(experiment)
     rows = results.view(np.uint8)
     lacking = (len(experiment.time()) - len(results)) * results.itemsize
     return (np.concatenate([rows, np.zeros(lacking, np.uint8)]) if lacking else rows).data
 
 
 def _ended() -> list[str]:
-    """How many rows there are, and what is said, where an FMU has ended the run."""
-    return [str(each) for each in _loop.ended or ()]
+    """How many rows there are, where an FMU has ended the run."""
+    return [] if _loop.ended is None else [str(_loop.ended)]
+
+
+def _finish() -> list[str]:
+    return _loop.finish()
 
 
 def _unload() -> None:

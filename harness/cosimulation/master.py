@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fmpy.fmi2 import fmi2Discard, fmi2OK, fmi2Warning
+from fmpy.fmi2 import fmi2Discard, fmi2Error, fmi2OK, fmi2Warning
 
 from ..base.errors import SimulationError, WiringError
 from ..base.progress import chunks, progress
@@ -28,6 +28,12 @@ from .unpacked_fmu import unpacked
 from .wiring import Fit, require, unknown
 
 LOG = logging.getLogger(__name__)
+
+KEPT = "the results are kept"
+"""Said of an FMU that fails after the run."""
+
+REFUSED = (fmi2Discard, fmi2Error)
+"""What a step is refused with after which a reset is allowed."""
 
 
 @contextmanager
@@ -53,7 +59,8 @@ class Loop:
     Attributes:
         fitted: what they are.
         instances: they, in the order in which they step.
-        ended: where an FMU has ended the last run, so many rows there are, and what is said of it.
+        ended: where an FMU has ended the last run, so many rows there are.
+        remarks: what is to be said of the last run.
     """
 
     def __init__(self, fitted: Fit, instances: Sequence[Instance], make_steps: MakeSteps) -> None:
@@ -61,9 +68,11 @@ class Loop:
         self.instances = instances
         self._make_steps = make_steps
         self._step_size = c_double()
-        self._wires: dict[tuple[Scheme, tuple[str, ...]], Wires] = {}
+        self._wires: dict[Any, Wires] = {}
         self._is_new = True
-        self.ended: tuple[int, str] | None = None
+        self._own_steps: dict[str, float] = {}
+        self.ended: int | None = None
+        self.remarks: list[str] = []
 
     def reset(self) -> None:
         """Brings all FMUs back to where they were when they had been loaded.
@@ -89,26 +98,61 @@ class Loop:
             WiringError: inputs or parameters do not fit the FMUs, or the scheme does not suit them.
             SimulationError: an FMU refused a call.
         """
-        wires, table, due = self.begin(experiment)
+        results = self.rows(experiment)
+        for text in self.finish():
+            LOG.warning(text)
+        return results
+
+    def rows(self, experiment: Experiment) -> Results:
+        """As `run`, before the FMUs are told that it is over."""
         time = experiment.time()
+        self.remarks = []
+        while True:
+            wires, table, due = self.begin(experiment)
+            refusal = self._steps(experiment, wires, table, due)
+            if refusal is None:
+                return wires.layout.results(table)
+            if _has_ended(refusal):
+                self.ended = refusal.step + 1
+                self.remarks.append(f"{refusal.call.instance.label} has ended the run at {time[refusal.step]:g} s")
+                return wires.layout.results(table[: self.ended])
+            begun = refusal.status == NOT_FINITE
+            failure = _failure(refusal.call, refusal.status, float(time[refusal.step if begun else refusal.instant]))
+            if not self._takes_longer_steps(refusal, experiment.step_size):
+                raise failure
+
+    def finish(self) -> list[str]:
+        """Tells the FMUs that the run is over; what is to be said of it, also of one that refuses that."""
+        for instance in self.instances:
+            try:
+                instance.call("terminate")
+            except SimulationError as refusal:
+                self.remarks.append(f"{refusal}; {KEPT}")
+        return self.remarks
+
+    def _steps(self, experiment: Experiment, wires: Wires, table: Results, due: Sequence[Change]) -> Refusal | None:
         with progress(len(table) - 1, experiment.label) as done:
             for chunk in self._tuned(chunks(len(table) - 1), due):
-                refusal = wires.steps(table, chunk)
-                if refusal and _has_ended(refusal):
-                    self.ended = _end(refusal, time)
-                    break
-                if refusal:
-                    begun = refusal.status == NOT_FINITE
-                    _check(refusal.call, refusal.status, float(time[refusal.step if begun else refusal.instant]))
+                if refusal := wires.steps(table, chunk):
+                    return refusal
                 table.passed(len(chunk))
                 done(chunk.stop)
-        for instance in self.instances:
-            instance.call("terminate")
-        if self.ended is None:
-            return wires.layout.results(table)
-        rows, text = self.ended
-        LOG.warning(text)
-        return wires.layout.results(table[:rows])
+        return None
+
+    def _takes_longer_steps(self, refusal: Refusal, step_size: float) -> bool:
+        """Whether somebody else's FMU that refuses its first step has one of its own, some of the loop's long, which it
+        makes from now on."""
+        instance, own = refusal.call.instance, _own_step(refusal.call.instance)
+        if not refusal.call.function.endswith("DoStep") or refusal.step > 0 or refusal.status not in REFUSED:
+            return False
+        if instance.own or instance.name in self._own_steps or _multiple(own, step_size) < 2:
+            return False
+        self._own_steps[instance.name] = own
+        self.remarks.append(
+            f"{instance.label} refuses steps of {step_size:g} s and makes its own, of {own:g} s; "
+            "its inputs and outputs are held in between"
+        )
+        return True
 
     def begin(self, experiment: Experiment) -> tuple[Wires, Results, list[Change]]:
         """Brings the FMUs from reset to the first step; gives what they are bound to, a table with the first row, and
@@ -122,12 +166,12 @@ class Loop:
         samples = self._present(experiment.samples(time))
         parameters = self._present(experiment.parameters)
         due = changes(parameters, time)
+        self._step_size.value = experiment.step_size
         wires = self._wired(Scheme(experiment.scheme), tuple(samples))
         table = wires.layout.table(time, samples)
         del samples  # the table has them
         self.reset()
         self._is_new, self.ended = False, None
-        self._step_size.value = experiment.step_size
         self._initialize(wires, table, initial(parameters), experiment.tolerance)
         return wires, table, due
 
@@ -169,10 +213,12 @@ class Loop:
         Raises:
             WiringError: the scheme does not suit the system.
         """
-        if (scheme, inputs) not in self._wires:
+        every = {name: _multiple(own, self._step_size.value) for name, own in self._own_steps.items()}
+        key = scheme, inputs, *every.items()
+        if key not in self._wires:
             fixed = self._step_size, self._make_steps
-            self._wires[scheme, inputs] = wired(self.fitted, self.instances, inputs, scheme, *fixed)
-        return self._wires[scheme, inputs]
+            self._wires[key] = wired(self.fitted, self.instances, inputs, scheme, *fixed, every)
+        return self._wires[key]
 
     def _initialize(
         self, wires: Wires, table: np.ndarray, parameters: Mapping[str, float], tolerance: float | None
@@ -232,17 +278,29 @@ def _has_ended(refusal: Refusal) -> bool:
     return isinstance(slave, FMU2Traced | FMU3Traced) and slave.has_ended()
 
 
-def _end(refusal: Refusal, time: np.ndarray) -> tuple[int, str]:
-    """The number of rows before it, and what is said."""
-    row = refusal.step
-    return row + 1, f"{refusal.call.instance.label} has ended the run at {time[row]:g} s"
+def _own_step(instance: Instance) -> float:
+    """That of an FMU in s, which it says to be fixed or proposes; 0 if it does neither."""
+    described = instance.interface.description
+    fixed = getattr(described.coSimulation, "fixedInternalStepSize", None)
+    default = described.defaultExperiment
+    return float(fixed or (default.stepSize if default else None) or 0.0)
 
 
-def _check(call: Call, status: int, time: float | None = None) -> None:
-    """Raises the error of a status at a time in s (of NaN, in the step from it on); None: before the first."""
+def _multiple(own: float, step_size: float) -> int:
+    """How many steps of the loop make one; 0 if no whole number does."""
+    number = round(own / step_size)
+    return number if abs(own - number * step_size) <= 1e-9 * own else 0
+
+
+def _check(call: Call, status: int) -> None:
+    """Raises the error of a status before the first step."""
+    if status == NOT_FINITE or status not in (fmi2OK, fmi2Warning):
+        raise _failure(call, status)
+
+
+def _failure(call: Call, status: int, time: float | None = None) -> SimulationError:
+    """The error of a status at a time in s (of NaN, in the step from it on); None: before the first."""
     if status == NOT_FINITE:
         when = "at the start" if time is None else f"in the step from {time:g} s"
-        raise call.instance.not_finite(call.names, call.values, when)
-    if status not in (fmi2OK, fmi2Warning):
-        when = "at the start" if time is None else f"at {time:g} s"
-        raise call.instance.failure(call.function, status, when)
+        return call.instance.not_finite(call.names, call.values, when)
+    return call.instance.failure(call.function, status, "at the start" if time is None else f"at {time:g} s")

@@ -10,7 +10,7 @@ stepped before, else along the derivative of the source. At the end, outputs go 
 dependencies, so that every output is that of its instant, with the inputs of that instant.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 from typing import NamedTuple
 
@@ -77,14 +77,19 @@ class Schedule(NamedTuple):
     end: Sequence[Action] = ()
 
 
-def schedule(scheme: Scheme, system: System, interfaces: Mapping[str, Interface]) -> Schedule:
+def schedule(
+    scheme: Scheme, system: System, interfaces: Mapping[str, Interface], slow: Collection[str] = ()
+) -> Schedule:
     """The schedule of a system, whose instances step in the order of the interfaces.
+
+    Args:
+        slow: instances with longer steps; what goes in and comes out of them is held.
 
     Raises:
         WiringError: propagation meets an algebraic loop.
     """
     if scheme is Scheme.PROPAGATED:
-        return _propagated(system, interfaces)
+        return _propagated(system, interfaces, slow)
     send = [Set(name) for name in interfaces]
     step = [Step(name) for name in interfaces]
     receive = [Get(name, [v.name for v in interface.of_causality("output")]) for name, interface in interfaces.items()]
@@ -93,7 +98,7 @@ def schedule(scheme: Scheme, system: System, interfaces: Mapping[str, Interface]
     return Schedule([action for actions in zip(send, step, receive, strict=True) for action in actions])
 
 
-def transfers(system: System, interfaces: Mapping[str, Interface]) -> dict[str, Transfer]:
+def transfers(system: System, interfaces: Mapping[str, Interface], slow: Collection[str] = ()) -> dict[str, Transfer]:
     """How the propagated scheme treats each input of a continuous FMU that a continuous output feeds."""
     order = list(interfaces)
     feedthrough = Feedthrough(system, interfaces)
@@ -103,7 +108,7 @@ def transfers(system: System, interfaces: Mapping[str, Interface]) -> dict[str, 
         is_ready = source in feedthrough.undeclared or not feedthrough.inputs[source]
         if not (_is_continuous(interfaces[giver], output) and _any_continuous(interfaces[taker])):
             continue
-        if not interfaces[taker].can_move(taken):
+        if not interfaces[taker].can_move(taken) or {giver, taker} & {*slow}:
             found[target] = Transfer.HELD
         elif order.index(giver) < order.index(taker) and is_ready:
             found[target] = Transfer.INTERPOLATED
@@ -135,9 +140,9 @@ def _any_continuous(interface: Interface) -> bool:
     return any(_is_continuous(interface, v.name) for v in interface.of_causality("output"))
 
 
-def _propagated(system: System, interfaces: Mapping[str, Interface]) -> Schedule:
+def _propagated(system: System, interfaces: Mapping[str, Interface], slow: Collection[str]) -> Schedule:
     feedthrough = Feedthrough(system, interfaces)
-    how = transfers(system, interfaces)
+    how = transfers(system, interfaces, slow)
     feeds = {target: source for source, target, _ in system.connections}
     lines, tangents = (
         _by_instance(n for n in how if how[n] is t) for t in (Transfer.INTERPOLATED, Transfer.EXTRAPOLATED)

@@ -61,6 +61,8 @@ typedef struct {
     const int32_t *orders;
     const Line *lines;        /* along which inputs are set to move; null: none */
     int32_t slopes;           /* of these the slopes are set, not the starts */
+    int32_t every;            /* it is made every so many steps */
+    int32_t lead;             /* whether these are counted by the end of the step */
 } Call;
 
 typedef int32_t Access2(void *component, const uint32_t *references, size_t count, void *values);
@@ -89,16 +91,21 @@ static int32_t exchange(const Call *call)
     return ((Access2 *)call->access)(call->component, call->references, call->count, call->values);
 }
 
-/* Makes a step; an FMU that then asks for the end of the simulation has discarded it. */
-static int32_t step(const Call *call, double time)
+/* Makes the step that ends with the step k; an FMU that then asks for the end of the simulation has discarded it. */
+static int32_t step(const Call *call, double time, size_t k)
 {
+    double size = *call->step_size;
+    if (call->every > 1) {
+        time = ((double)k + 1.0 - call->every) * size;
+        size *= call->every;
+    }
     bool event = false, ended = false, early = false;
     double reached = time;
     if (call->fmi == 2) {
-        return ((DoStep2 *)call->do_step)(call->component, time, *call->step_size, 1);
+        return ((DoStep2 *)call->do_step)(call->component, time, size, 1);
     }
     const int32_t status = ((DoStep3 *)call->do_step)(
-        call->component, time, *call->step_size, true, &event, &ended, &early, &reached);
+        call->component, time, size, true, &event, &ended, &early, &reached);
     return ended && (status == OK || status == WARNING) ? DISCARD : status;
 }
 
@@ -211,9 +218,12 @@ static int all_finite(const Call *call)
     return 1;
 }
 
-/* Makes the call; what it puts out is looked at. */
-static int32_t made(const Call *call, const unsigned char *row)
+/* Makes the call of the step k, unless it is not due; what it puts out is looked at. */
+static int32_t made(const Call *call, const unsigned char *row, size_t k)
 {
+    if (call->every > 1 && (k + (size_t)call->lead) % (size_t)call->every) {
+        return OK;
+    }
     if (call->lines) {
         aim(call);
     } else if (call->sources && !changed(call, row)) {
@@ -226,7 +236,7 @@ static int32_t made(const Call *call, const unsigned char *row)
     if (call->do_step) {
         double time;
         memcpy(&time, row, sizeof time);
-        return step(call, time);
+        return step(call, time, k);
     }
     const int32_t status = exchange(call);
     if (call->factors && !call->sources) {
@@ -241,11 +251,12 @@ static int32_t made(const Call *call, const unsigned char *row)
     return status;
 }
 
-/* Makes the calls first ... last - 1 up to one that is refused; returns its number, or last. */
-static size_t make(const Call *calls, size_t first, size_t last, const unsigned char *row, int32_t *status)
+/* Makes the calls first ... last - 1 of the step k up to one that is refused; returns its number, or last. */
+static size_t make(
+    const Call *calls, size_t first, size_t last, const unsigned char *row, size_t k, int32_t *status)
 {
     for (size_t i = first; i < last; i++) {
-        *status = made(&calls[i], row);
+        *status = made(&calls[i], row, k);
         if (*status != OK && *status != WARNING) {
             return i;
         }
@@ -262,10 +273,10 @@ EXPORT size_t make_steps(const Call *calls, size_t turn, size_t number, unsigned
 {
     for (size_t k = first; k < last; k++) {
         unsigned char *next = table + (k + 1) * size;
-        *refused = make(calls, 0, turn, row, status);
+        *refused = make(calls, 0, turn, row, k, status);
         if (*refused == turn) {
             memcpy(row, next, known);
-            *refused = make(calls, turn, number, row, status);
+            *refused = make(calls, turn, number, row, k, status);
         }
         if (*refused < number) {
             return k;

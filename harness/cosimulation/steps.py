@@ -43,11 +43,14 @@ the step the others go there."""
 
 
 def interpreted(begin: Sequence[Call], end: Sequence[Call], row: bytearray, known: int) -> Steps:
-    """The steps, each of which is these calls in this order; an unchanged set of values is not set again."""
+    """The steps, each of which is these calls in this order, if they are due; an unchanged set of values is not set
+    again."""
     now, time = memoryview(row), c_double.from_buffer(row)
 
-    def refused(calls: Sequence[Call]) -> tuple[Call, int] | None:
+    def refused(calls: Sequence[Call], k: int) -> tuple[Call, int] | None:
         for call in calls:
+            if (k + call.lead) % call.every:
+                continue
             if call.changed and not call.changed():
                 continue
             status = made(call, time.value)
@@ -59,11 +62,11 @@ def interpreted(begin: Sequence[Call], end: Sequence[Call], row: bytearray, know
         data, size = table.view(np.uint8).data, table.itemsize
         computed = now[known:size]
         for k in numbers:
-            if refusal := refused(begin):
+            if refusal := refused(begin, k):
                 return Refusal(*refusal, k, k)
             following = (k + 1) * size
             now[:known] = data[following : following + known]
-            if refusal := refused(end):
+            if refusal := refused(end, k):
                 return Refusal(*refusal, k, k + 1)
             data[following + known : following + size] = computed
         return None

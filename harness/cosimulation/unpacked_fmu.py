@@ -37,8 +37,19 @@ def unpacked(interface: Interface, folder: Path | None = None) -> Iterator[Unpac
             raise UnpackingError(f"{path.name} cannot be unpacked to {files}: FMUs need a plain ASCII folder")
         rest()  # unpacking may take longer than a call may
         unpack(path, files)
+        _find_binary(interface, Path(files, "binaries"))
         platforms = cast(list[str], fmpy.supported_platforms(files))
         if fmpy.platform not in platforms:
             has = ", ".join(platforms) or "none"
             raise UnpackingError(f"{path.name} has no binary for {fmpy.platform}; it has: {has}")
         yield Unpacked(interface, files)
+
+
+def _find_binary(interface: Interface, binaries: Path) -> None:
+    """Brings a binary that is in the folder of the other version of FMI to that of its own."""
+    own, other = str(fmpy.platform), str(fmpy.platform_tuple)
+    if interface.fmi == 3:
+        own, other = other, own
+    file = f"{interface.identifier}{fmpy.sharedLibraryExtension}"
+    if not (binaries / own / file).exists() and (binaries / other / file).exists() and not (binaries / own).exists():
+        (binaries / other).rename(binaries / own)

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import re
 import subprocess
 import sys
 import time
@@ -11,6 +12,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+import fmpy
 import numpy as np
 import pytest
 
@@ -25,7 +27,7 @@ from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.process_answers import LENGTH, Answer, InvalidAnswer, receive, send
 from driveline.harness.cosimulation.runs import kept_loaded, run
 from driveline.harness.cosimulation.steps import interpreted
-from driveline.harness.cosimulation.system import System
+from driveline.harness.cosimulation.system import Scheme, System
 from driveline.harness.loop.settings import loop as looped
 from tests import ROOT
 from tests.foreign import tampered
@@ -48,7 +50,6 @@ FAULTS = {
     ),
     "aborts": ({"IN_GET_REAL": "if (now > 0.0995) abort()"}, r"crashed \(SIGABRT\) in fmi2GetReal at 0\.1 s"),
     "crashes when instantiated": ({"IN_INSTANTIATE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2Instantiate$"),
-    "crashes when freed": ({"IN_FREE": "raise(SIGSEGV)"}, r"crashed \(SIGSEGV\) in fmi2FreeInstance$"),
     "ends by a signal of real time": (
         {"IN_DO_STEP": f"{LATER} raise(SIGRTMIN + 6)"},
         r"crashed \(signal 4\d\) in fmi2DoStep at 0\.1 s",
@@ -60,6 +61,10 @@ FAULTS = {
     "hangs when instantiated": (
         {"IN_INSTANTIATE": "for (;;) usleep(1000)"},
         r"did not return from fmi2Instantiate within 0\.5 s",
+    ),
+    "is pending": (
+        {"IN_DO_STEP": f"{LATER} return 5"},
+        r"answered fmi2DoStep at 0\.1 s with pending: it works asynchr",
     ),
     "has the status -1": ({"IN_DO_STEP": f"{LATER} return -1"}, r"answered fmi2DoStep at 0\.1 s with the status -1"),
     "has the status 17": ({"IN_DO_STEP": f"{LATER} return 17"}, r"answered fmi2DoStep at 0\.1 s with the status 17"),
@@ -80,7 +85,7 @@ FAULTS = {
 every_fmi = pytest.mark.parametrize("fmi", [2, 3])
 
 
-OF_EACH_CALL = ("exits in a step", "is not instantiated", "aborts", "crashes when freed", "puts out NaN")
+OF_EACH_CALL = ("exits in a step", "is not instantiated", "aborts", "puts out NaN")
 """Faults that meet every call whose name and arguments are others in FMI 3.0."""
 
 
@@ -130,6 +135,73 @@ def test_the_rows_up_to_the_end_that_an_fmu_asks_for_are_the_result(tmp_path, ma
             np.testing.assert_allclose(results["time"], 1e-3 * np.arange(101), atol=1e-12)
             np.testing.assert_allclose(results[list(results.dtype.names or [])[1]], results["time"], atol=1e-12)
     assert [each.getMessage() for each in caplog.records] == ["car (stranger.fmu) has ended the run at 0.1 s"] * 2
+
+
+AFTERWARDS = {
+    "IN_FREE": ("raise(SIGSEGV)", r"crashed \(SIGSEGV\) in fmi2FreeInstance"),
+    "IN_TERMINATE": ("return 3", "answered fmi2Terminate with error: no message"),
+    "IN_TERMINATE ": ("raise(SIGSEGV)", r"crashed \(SIGSEGV\) in fmi2Terminate"),
+}
+"""What goes wrong after a whole run."""
+
+
+@pytest.mark.parametrize(("when", "fmi"), slow(product(AFTERWARDS, (2, 3)), but=[(when, 2) for when in AFTERWARDS]))
+def test_a_run_that_is_over_is_not_lost(tmp_path, unpacked, caplog, when, fmi):
+    does, message = AFTERWARDS[when]
+    faulty: dict[str, Any] = {when.strip(): does}
+    results = run(System({"car": build_stranger(tmp_path, fmi=fmi, **faulty)}), Experiment(0.3))
+    assert len(results) == 301
+    (said,) = [each.getMessage() for each in caplog.records]
+    assert re.fullmatch(rf"car \(stranger\.fmu\) {in_words_of(fmi, message)}; the results are kept", said)
+    assert list(unpacked.iterdir()) == []
+
+
+def test_functions_that_nobody_calls_may_be_missing(tmp_path):
+    without = {"fmi2CancelStep": "anotherName", "fmi2GetDirectionalDerivative": "another"}
+    assert len(run(System({"car": build_stranger(tmp_path, **without)}), Experiment(0.01))) == 11
+    with pytest.raises(SimulationError, match="DoStep"):
+        run(System({"car": build_stranger(tmp_path, fmi2DoStep="anotherName")}), Experiment(0.01))
+
+
+@every_fmi
+def test_a_binary_in_the_folder_of_the_other_version_is_found(tmp_path, fmi):
+    path, other = build_stranger(tmp_path, fmi=fmi), tmp_path / "other.fmu"
+    folders = [fmpy.platform, fmpy.platform_tuple]
+    with zipfile.ZipFile(path) as source, zipfile.ZipFile(other, "w") as target:
+        for name in source.namelist():
+            target.writestr(name.replace(folders[fmi - 2], folders[3 - fmi]), source.read(name))
+    assert len(run(System({"car": other}), Experiment(0.01))) == 11
+
+
+SHORT = "if (step < 0.0099) return 2"
+
+
+@every_fmi
+@pytest.mark.parametrize("make", [CompiledSteps, interpreted])
+@pytest.mark.parametrize("scheme", Scheme)
+def test_an_fmu_that_refuses_short_steps_makes_its_own(tmp_path, fmi, make, scheme, caplog):
+    """Ten steps of the loop long: inputs are held over it, outputs from its end on."""
+    path = build_stranger(
+        tmp_path, fmi=fmi, IN_DO_STEP=SHORT, IN_GET_REAL="if (n > 1) values[0] = now, values[1] = kept[0]"
+    )
+    path = tampered(path, tmp_path / "slow.fmu", lambda xml: xml.replace('stepSize="0.001"', 'stepSize="0.01"'))
+    k = np.arange(36)
+    with loaded(System({"car": path}), make_steps=make) as loop:
+        for _ in range(2):
+            results = loop.run(Experiment(0.035, inputs={"car.T_mot": k}, scheme=scheme))
+            np.testing.assert_allclose(results["car.omega_1"], 0.01 * (k // 10), atol=1e-12)
+            late = 0 if scheme is Scheme.PROPAGATED else 10
+            np.testing.assert_array_equal(results["car.omega_2"], np.maximum(k // 10 * 10 - late, 0))
+    (said,) = [each.getMessage() for each in caplog.records]
+    assert said.startswith("car (slow.fmu) refuses steps of 0.001 s and makes its own, of 0.01 s; its inputs and")
+
+
+@pytest.mark.parametrize(("own", "refuses"), [("0.01", "0.02"), ("0.0015", "0.0012")])
+def test_an_fmu_whose_own_step_is_refused_or_no_multiple_is_refused(tmp_path, own, refuses):
+    path = build_stranger(tmp_path, IN_DO_STEP=f"if (step < {refuses}) return 3")
+    path = tampered(path, tmp_path / "slow.fmu", lambda xml: xml.replace('stepSize="0.001"', f'stepSize="{own}"'))
+    with pytest.raises(SimulationError, match=r"answered fmi2DoStep at 0(\.009)? s with error"):
+        run(System({"car": path}), Experiment(0.03))
 
 
 @every_fmi
