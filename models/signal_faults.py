@@ -107,6 +107,7 @@ class Past(NamedTuple):
     torque: Annotated[tuple[float, ...], Real("N.m", "of the motor")]
     valid: Annotated[tuple[bool, ...], Boolean("flag of the message")]
     counter: Annotated[tuple[int, ...], Integer("counter of the message")]
+    alive: Annotated[tuple[int, ...], Integer("counter of the motor's frames")]
 
 
 class State(NamedTuple):
