@@ -61,6 +61,12 @@ STIFFNESSES, GAPS = (0.4, 0.6, 0.85, 1.2, 1.7, 2.4), (0.25, 0.7, 2.0)
 BEFORE, AFTER = 0.2, 1.0
 """Time in s from the step that is looked at."""
 
+RISE = 0.2
+"""Time in s within which the torque has made its step."""
+
+STEP_OVER_NOISE = 10.0
+"""The least, of the torque."""
+
 STEP_SIZE = 1e-3
 
 CORRELATED = 0.1
@@ -128,20 +134,22 @@ def tip(recording: Measurement) -> Tip:
     """
     t, T = recording.time, recording.T_mot
     T_s = float(np.median(np.diff(t)))
-    span = max(round(0.05 / T_s), 2)
-    change = np.abs(T[span:] - T[:-span])
-    k = int(change.argmax()) + span // 2
-    first, last = np.searchsorted(t, [t[k] - BEFORE, t[k] + AFTER])
-    if t[k] - t[0] < BEFORE or t[-1] - t[k] < 0.5 * AFTER:
+    span = max(round(RISE / T_s), 2)
+    k = int(np.abs(T[span:] - T[:-span]).argmax()) + span // 2
+    before, after = (
+        float(np.median(part)) for part in (T[max(k - 2 * span, 0) : max(k - span, 1)], T[k + span :][:span])
+    )
+    if k < 2 * span or not abs(after - before) > STEP_OVER_NOISE * white_noise(T):
+        raise RecordingError(f"{recording.name}: the torque has no step beyond its noise that begins after {RISE:g} s")
+    onset = k - span + int((np.abs(T[k - span : k + 1] - before) > 0.1 * abs(after - before)).argmax())
+    if t[onset] - t[0] < BEFORE or t[-1] - t[onset] < 0.5 * AFTER:
         raise RecordingError(
-            f"{recording.name}: the step at {t[k]:.3g} s needs {BEFORE:g} s before it and {0.5 * AFTER:g} s after it"
+            f"{recording.name}: the step at {t[onset]:.3g} s needs {BEFORE:g} s before and {0.5 * AFTER:g} s after it"
         )
+    first, last = np.searchsorted(t, [t[onset] - BEFORE, t[onset] + AFTER])
     t, T, omega = t[first:last], T[first:last], recording.omega_1[first:last]
     steady = t < t[0] + 0.5 * BEFORE
     T_0, omega_0 = float(T[steady].mean()), float(omega[steady].mean())
-    after = float(np.median(T[t > t[0] + BEFORE + 0.1]))
-    if abs(after - T_0) < 10.0 * white_noise(recording.T_mot):
-        raise RecordingError(f"{recording.name}: the torque has no step beyond its noise")
     time = np.arange(0.0, t[-1] - t[0], STEP_SIZE)
     T_mot = np.interp(time + 0.5 * STEP_SIZE, t - t[0], T)
     return Tip(time, T_mot, t - t[0], omega, T_0, omega_0, T_0 * after < 0.0)
@@ -157,7 +165,7 @@ def identify_step(recording: Measurement, vehicle: Mapping[str, Any], settings: 
         RecordingError: it has no step that can be used.
     """
     step = tip(recording)
-    quiet = step.at < BEFORE
+    quiet = step.at < 0.9 * BEFORE
     before = step.at[quiet], step.omega_1[quiet]
     noise = float(np.std(before[1] - np.polyval(np.polyfit(*before, 2), before[0])))
     with kept_loaded():
