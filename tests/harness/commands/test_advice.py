@@ -1,11 +1,16 @@
-"""Every option that a message about a recording names is one of the command that says it."""
+"""Every option that a message names is one of the command that says it; `conftest.py` holds all other tests to it."""
 
+import ast
 import re
 from pathlib import Path
 
 import pytest
 
+from driveline.harness.commands.cli import COMMANDS as EVERY
 from driveline.harness.commands.cli import main, parser
+from driveline.harness.commands.target import ACTIONS
+from tests import ROOT
+from tests.harness.commands.conftest import OPTION, options, unknown_options
 
 NAMES = "time [s],T_driver [Nm],T_mot [Nm],v [m/s]\n"
 FILES = {
@@ -47,3 +52,27 @@ def test_an_option_that_a_message_names_is_one_of_the_command(
         parser().parse_args([*typed, option, SAMPLES[option]])
         if command == "replay":  # which reads as the explorer does
             parser().parse_args(["explore", str(path), option, SAMPLES[option]])
+
+
+def said(path: Path) -> list[str]:
+    """The texts of a module that are no docstrings."""
+    tree = ast.parse(path.read_bytes())
+    documented = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    return [
+        node.value
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in documented
+    ]
+
+
+def test_the_options_that_a_command_names_anywhere_are_its_own_or_those_of_the_one_that_it_names() -> None:
+    for command in EVERY.keys() - {"target"}:
+        for text in said(ROOT / "harness" / "commands" / f"{command}.py"):
+            assert not unknown_options(command, text), (command, text)
+
+
+def test_an_option_that_is_named_anywhere_is_one_of_some_command() -> None:
+    known = set().union(*map(options, [*EVERY, *(f"target {action}" for action in ACTIONS)]), {"--help"})
+    for path in [*(ROOT / "harness").rglob("*.py"), *(ROOT / "fmus" / "building").rglob("*.py")]:
+        texts = [text for text in said(path) if " " in text]  # what is a word alone is for compilers and git
+        assert {option for text in texts for option in OPTION.findall(text)} <= known, path
