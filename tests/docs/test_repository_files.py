@@ -14,6 +14,9 @@ from tests import ROOT
 from tests.docs.pages import commands
 
 WORKFLOWS = [*sorted((ROOT / ".github" / "workflows").glob("*.yml")), *(ROOT / "examples" / "github").glob("*.yml")]
+IN_PAGE = re.findall(r"^```yaml\n(.*?)^```", (ROOT / "docs" / "fmus.md").read_text(encoding="utf-8"), re.M | re.S)[0]
+"""That can be copied from the page on FMUs."""
+
 FORMS = [path for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml") if path.stem != "config"]
 
 SCHEMAS = {
@@ -24,8 +27,9 @@ SCHEMAS = {
 }
 
 
-def test_files_keep_their_schemas() -> None:
-    for schema, paths in SCHEMAS.items():
+def test_files_and_the_workflow_of_a_page_keep_their_schemas(tmp_path: Path) -> None:
+    (tmp_path / "check.yml").write_text(IN_PAGE, encoding="utf-8")
+    for schema, paths in [*SCHEMAS.items(), ("github-workflows", [tmp_path / "check.yml"])]:
         check = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", f"vendor.{schema}", *map(str, paths)]
         done = subprocess.run(check, capture_output=True, text=True)
         assert done.returncode == 0, done.stdout
@@ -41,8 +45,8 @@ def test_the_citation_and_the_changelog_are_of_this_release() -> None:
 def test_workflows_call_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M)
     monkeypatch.chdir(tmp_path)
-    for workflow in WORKFLOWS:
-        jobs = yaml.safe_load(workflow.read_text(encoding="utf-8"))["jobs"].values()
+    for workflow in (*(each.read_text(encoding="utf-8") for each in WORKFLOWS), IN_PAGE):
+        jobs = yaml.safe_load(workflow)["jobs"].values()
         for script in (step["run"] for job in jobs for step in job["steps"] if "run" in step):
             assert set(re.findall(r"^make ([a-z-]+)", script, re.M)) <= set(targets), workflow
             for arguments in commands(script):
