@@ -9,6 +9,10 @@ class BuildError(Exception):
     """What was asked for cannot be built; the text says why."""
 
 
+class NotPossible(BuildError):
+    """Something that a build needs is missing; the text says what."""
+
+
 class ParameterFileError(BuildError):
     """A file with parameters is refused; the text names the lines and says what is allowed."""
 

@@ -9,17 +9,22 @@ from contextlib import suppress
 from functools import cache, lru_cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .errors import BuildError
-from .fmu import Fmu
 from .user_cache import user_cache
+
+if TYPE_CHECKING:
+    from .fmu import Fmu
 
 ENTRY = "extra/driveline.damping/origin.json"
 """Where it stands in the archive."""
 
 ROOT = Path(__file__).parents[1]
 """That the packages are in."""
+
+NATIVE_FOLDER = "native"
+"""Of the native builds, in that of the others."""
 
 PACKAGES, KINDS = ("models", "fmus"), (".py", ".c", ".h", ".toml")
 """What the sources of every FMU of the project are."""
@@ -95,12 +100,17 @@ def _digest(contents: Mapping[str, bytes]) -> str:
     return digest.hexdigest()
 
 
+def located(name: str, folder: Path, build: str) -> Path:
+    """Where an FMU of the project stands in the folder of the files."""
+    return (folder / NATIVE_FOLDER if build == "native" else folder) / f"{name}.fmu"
+
+
 def tools_of(build: str) -> dict[str, str]:
     """Versions of the packages that a build, "python" or "native", is made with."""
     return {name: version(name) for name in TOOLS[build]}
 
 
-def origin_entry(fmu: Fmu, build: str) -> dict[str, bytes]:
+def origin_entry(fmu: "Fmu", build: str) -> dict[str, bytes]:
     """The file that tells it, by its name in the archive.
 
     Raises:
@@ -141,7 +151,7 @@ def is_stale(path: Path) -> bool:
     return origin is None or origin.sources != sources_digest()
 
 
-def is_as_made_now(path: Path, fmu: Fmu, build: str) -> bool:
+def is_as_made_now(path: Path, fmu: "Fmu", build: str) -> bool:
     """Whether the FMU at `path` was made from the sources, start values and tools that it would be made from now."""
     origin = origin_of(path)
     now = sources_digest(), dict(fmu.start_values), tools_of(build)

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from ..description.variables import interface
-from ..errors import BuildError
+from ..errors import BuildError, NotPossible
 from ..fmu import Fmu
 from ..names import meant
-from ..origin import is_as_made_now, is_stale, origin_of
+from ..origin import NATIVE_FOLDER, is_as_made_now, is_stale, located, origin_of
 from .operator_meant import operator_meant
 from .own_file import fmu_in, place
 
@@ -22,17 +22,13 @@ PLATFORMS = ("host", "all")
 FMIS = (2, 3)
 """Of FMI 2.0 and FMI 3.0; there are native builds alone for the latter."""
 
-NATIVE_FOLDER, FMI3_FOLDER = "native", "fmi3"
-"""Folders of the native builds and of those for FMI 3.0, in that of the others."""
+FMI3_FOLDER = "fmi3"
+"""Of the builds for FMI 3.0, in that of the others."""
 
 LOG = logging.getLogger(__name__)
 
 Builder = Callable[[Fmu, Path], Path]
 """Builds an FMU into a folder and returns the path of its file."""
-
-
-class NotPossible(BuildError):
-    """Something that a build needs is missing; the text says what."""
 
 
 def build_fmus(
@@ -142,11 +138,6 @@ def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
 
             made += rebuilt(EVERY[name], path, folder, build)
     return made
-
-
-def located(name: str, folder: Path, build: str) -> Path:
-    """Where an FMU of the project stands in the folder of the files."""
-    return (folder / NATIVE_FOLDER if build == "native" else folder) / f"{name}.fmu"
 
 
 def rebuilt(fmu: Fmu, path: Path, folder: Path, build: str) -> list[Path]:

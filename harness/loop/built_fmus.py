@@ -5,7 +5,8 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Unpack
 
-from ...fmus.errors import BuildError
+from ...fmus.errors import BuildError, NotPossible
+from ...fmus.origin import is_stale, located
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError
 from .places import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile
@@ -70,9 +71,6 @@ Place = Callable[[Needed], tuple[Path, list[Path]]]
 
 
 def _in_cache(needed: Needed) -> tuple[Path, list[Path]]:
-    from ...fmus.building.builds import located
-    from ...fmus.origin import is_stale
-
     if not any(is_stale(located(name, BUILD, build)) for build, names in needed.items() for name in names):
         return BUILD, []
     from ...fmus.catalogue import EVERY  # what is up to date is found to be so without
@@ -90,8 +88,6 @@ def _in_place(needed: Needed) -> tuple[Path, list[Path]]:
 
 def _refreshed(loops: list[Settings], build_in: Place) -> list[Settings]:
     """Builds what is missing or stale in BUILD for loops; with another build where the native one is not possible."""
-    from ...fmus.building.builds import NotPossible
-
     try:
         folder, new = build_in(_needed(loops))
     except NotPossible as reason:
@@ -127,8 +123,6 @@ def made_if_missing(fmu: "Fmu", folder: Path, build: str) -> Path:
     Raises:
         DrivelineError: it cannot be built here.
     """
-    from ...fmus.building.builds import located
-    from ...fmus.origin import is_stale
     from .fmu_cache import refreshed_copy
 
     if not is_stale(path := located(fmu.name, folder, build)):

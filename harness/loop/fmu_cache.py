@@ -9,8 +9,7 @@ from pathlib import Path
 from shutil import copyfile
 from typing import TYPE_CHECKING
 
-from ...fmus.building.builds import located, rebuilt
-from ...fmus.origin import is_stale, origin_of, sources_digest
+from ...fmus.origin import is_stale, located, origin_of, sources_digest
 from ..base.atomic_files import alone, complete
 from ..base.user_cache import forget, is_as_made, named_as_cache, seal, user_cache
 from .places import BUILD, BUILDS
@@ -36,6 +35,8 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
         BuildError: start values that one was built with are refused by what it is now.
         DrivelineError: the cache cannot be written.
     """
+    from ...fmus.building.builds import rebuilt  # only where something may be made
+
     cache = _cache()
     kept, new = cache / _key(folder), list[Path]()
     with named_as_cache(cache), alone(kept):

@@ -2,7 +2,7 @@
 
 import dataclasses
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from ...fmus.unit_conversion import factor
@@ -42,12 +42,14 @@ def built_with(
     return made
 
 
-def _require_of_plant(names: Iterable[str], plant: str) -> None:
+def _require_of_plant(names: Collection[str], plant: str) -> None:
     """Refuses parameters that a plant of the project lacks and another one has."""
-    from ...fmus.catalogue import FMUS
+    if not (names and plant in PLANTS):
+        return
+    from ...fmus.catalogue import FMUS  # all equations, which a run of FMUs does not need
 
     problems = []
-    for name in names if plant in PLANTS else ():
+    for name in names:
         place, _, parameter = name.partition("@")[0].partition(".")
         having = [other for other in PLANTS if parameter in FMUS[other].block.Parameters._fields]
         if place == "plant" and having and plant not in having:

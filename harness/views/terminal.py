@@ -31,6 +31,9 @@ def print_table(table: Table) -> None:
 
 def _parts(table: Table, console: Console) -> Iterator[Table]:
     """As many columns at a time as fit without a broken word."""
+    if _width(table, console) <= console.width:  # at once, as each look at a width takes its time
+        yield table
+        return
     words = list(takewhile(lambda column: column.justify == "left", table.columns))
     labels = words if len(words) < len(table.columns) else words[:1]
     title, shown = table.title, list[Column]()

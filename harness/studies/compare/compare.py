@@ -19,7 +19,6 @@ from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import at_samples, evaluate
 from ...metrics.run_metrics import Metrics
-from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
 from ...views.figure_options import PLAIN, FigureOptions
 from ...views.metrics_table import DAMPINGS, Row, values, write_markdown, write_metrics
@@ -131,6 +130,8 @@ def run_cases(
         output: folder for the files of signals.
         format: of those files, one of `harness.views.signals_file.FORMATS`.
     """
+    from ...simulation.many_runs import run_many  # one run does without
+
     return run_many(partial(run_case, output=output, loops=loops, manoeuvres=manoeuvres, format=format), todo)
 
 
