@@ -11,6 +11,7 @@ from driveline.fmus.fmu import Fmu
 from driveline.harness.exchange.compliance import check
 from driveline.harness.identification import diagnostics
 from driveline.harness.identification.priors import PRIORS
+from driveline.harness.loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS, PARAMETERS, PLACES, ROAD_LOAD
 from driveline.harness.recordings import (
     alignment,
     channel_rules,
@@ -24,7 +25,12 @@ from driveline.harness.recordings import (
 from driveline.harness.recordings.missing_values import FILLED
 from driveline.harness.recordings.quantities import BY_UNIT, QUANTITIES, aliases
 from driveline.harness.recordings.thresholds import Threshold
+from driveline.harness.simulation.excitation_drive import MEASURED_WHEELS
+from driveline.harness.studies.faults.fault_injection import STATUS, T_DAMP
+from driveline.harness.studies.faults.judges import JUDGES
+from driveline.harness.views import drive_figure, run_figure, step_figure
 from driveline.harness.views.markdown import markdown_table
+from driveline.harness.views.signal_lines import Row
 from driveline.models.controller.causes import FAILURES, FEEDING, Cause
 from driveline.models.damping_controller import BLOCK
 from tests.fmus.legal_hosts import HOSTS
@@ -158,6 +164,57 @@ def _each(value: str) -> str:
     return "; ".join(f"{text} ({', '.join(of)})" for text, of in by_value.items())
 
 
+def loop_variables() -> str:
+    """What the loop exchanges with the FMU in each place; in brackets what an FMU need not have."""
+    asked: dict[tuple[str, str], dict[str, str | None]] = {}
+    for each in CONNECTIONS:
+        asked.setdefault((each.source.partition(".")[0], "outputs"), {})[each.source] = each.unit
+        asked.setdefault((each.target.partition(".")[0], "inputs"), {})[each.target] = each.unit
+    for kind, ports in (("inputs", INPUTS), ("outputs", OUTPUTS), ("parameters", PARAMETERS)):
+        for port in ports:
+            asked.setdefault((port.name.partition(".")[0], kind), {})[port.name] = port.unit
+    rows = [
+        (f"`{place}`", *(_variables(asked.get((place, kind), {})) for kind in ("inputs", "outputs", "parameters")))
+        for place in PLACES
+    ]
+    return markdown_table(("place", "inputs", "outputs", "parameters"), rows, labels=4)
+
+
+def _variables(asked: dict[str, str | None]) -> str:
+    needed, others = [], []
+    for name, unit in asked.items():
+        text = f"`{name.partition('.')[2]}`{f' {unit}' if unit else ''}"
+        (others if name in OPTIONAL else needed).append(text)
+    return " ".join(filter(None, (", ".join(needed), f"({', '.join(others)})" if others else "")))
+
+
+def further_variables() -> str:
+    """What some results use beside what the loop exchanges, and what becomes of them without it."""
+    loop = {name for each in CONNECTIONS for name in (each.source, each.target)}
+    loop |= {port.name for port in (*INPUTS, *OUTPUTS, *PARAMETERS)}
+    uses: dict[tuple[str, str], list[str]] = {}  # by what for, and what is without it
+    for module in (run_figure, step_figure, drive_figure):
+        for row in vars(module).values():
+            for line in row.lines if isinstance(row, Row) else ():
+                for name in sorted(set(line.signal.columns) - loop):
+                    uses.setdefault((f"figure, {_plain(row.label)}", "the curve is left out"), []).append(name)
+    judges = ", ".join(judge.name for judge in JUDGES if judge.of_status)
+    uses[f"`faults`: {judges}", "they are left out, and named"] = [STATUS]
+    uses["`faults`: the torque that is added", "`T_ref` less the demand"] = [T_DAMP]
+    uses["`record`: the torque of the measurement wheels", "no such column"] = [MEASURED_WHEELS]
+    uses["`replay`, `record`: brake and grade", "the file of `--vehicle`"] = [f"plant.{name}" for name in ROAD_LOAD]
+    rows = (
+        (what, ", ".join(f"`{name}`" for name in dict.fromkeys(names)), without)
+        for (what, without), names in uses.items()
+    )
+    return markdown_table(("result", "variables", "without them"), rows, labels=3)
+
+
+def _plain(label: str) -> str:
+    """The label of a panel on one line, without its unit."""
+    return label.replace(",\n", ", ").replace("\n", " ").partition(" in ")[0].rstrip(",")
+
+
 TABLES: dict[str, Callable[[], str]] = {
     function.__name__: function
     for function in (
@@ -171,6 +228,8 @@ TABLES: dict[str, Callable[[], str]] = {
         recording_thresholds,
         identification_thresholds,
         identification_priors,
+        loop_variables,
+        further_variables,
     )
 }
 """By the names that pages call them."""
