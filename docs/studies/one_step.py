@@ -26,7 +26,7 @@ from .study import Cell, Column, Measured, Study, Table
 
 STEPS = ("tipin15", "tipin50", "tipout", "regen", "tipin15r")
 
-SEED, CARS = 7, 15
+SEED, CARS = 7, 10
 """Of the first car, and cars of each kind; none of these was used in development."""
 
 UNLIKE = {"J_p": 1.5, "k_x": 0.6, "m_h": 1.3, "J_y": 0.8, "J_g": 1.5}
