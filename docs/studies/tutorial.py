@@ -8,6 +8,7 @@ from driveline.harness.cosimulation.results import Results
 from driveline.harness.design.design_trials import loop_parameters, own_gains
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.manoeuvres.for_car import for_car
 from driveline.harness.metrics.evaluate import at_samples, evaluate
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
@@ -39,12 +40,12 @@ def cars() -> dict[str, dict[str, Any]]:
 
 def _run(row: tuple[Mapping[str, Any], bool]) -> Results:
     parameters, control = row
-    return simulate(TIPIN, parameters=parameters, control=control)
+    return simulate(for_car(TIPIN, parameters), parameters=parameters, control=control)
 
 
 def _table(rows: Mapping[str, tuple[Mapping[str, Any], bool]]) -> Table:
-    found = run_many(_run, rows.values(), label="tutorial")
-    cells = (metrics_cells(evaluate(results, TIPIN)) for results in found)
+    found = zip(rows.values(), run_many(_run, rows.values(), label="tutorial"), strict=True)
+    cells = (metrics_cells(evaluate(results, for_car(TIPIN, parameters))) for (parameters, _), results in found)
     return Table("tip-in", COLUMNS, dict(zip(rows, cells, strict=True)))
 
 
@@ -57,12 +58,13 @@ def rows() -> dict[str, tuple[Mapping[str, Any], bool]]:
 
 def measure() -> Measured:
     both = {name: at_samples(simulate(TIPIN, control=control)) for name, control in DAMPINGS.items()}
-    van = {name: at_samples(_run((cars()["van, own gains"], control))) for name, control in DAMPINGS.items()}
+    of_van = cars()["van, own gains"]
+    van = {name: at_samples(_run((of_van, control))) for name, control in DAMPINGS.items()}
     title = f"{PLANTS[0]}, {TIPIN.description}, damping off"
     figures = {
         "oscillation": run_drawing(both[WITHOUT], TIPIN, title, FigureOptions(window=(0.8, 3.0))),
         "damped": step_drawing(both, TIPIN, PLANTS[0]),
-        "van": step_drawing(van, TIPIN, f"{PLANTS[0]}, van"),
+        "van": step_drawing(van, for_car(TIPIN, of_van), f"{PLANTS[0]}, van"),
     }
     return Measured({"tipin15": _table(rows())}, figures)
 

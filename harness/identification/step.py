@@ -79,8 +79,8 @@ UNLIKE = 1.4
 """How wrong what is not explained makes the answer, over how far the answers of both plants are apart: drawn cars whose
 mounts, hubs and body are others than those of their vehicle file are within."""
 
-APART = {"C": 0.08, "phi_B": 0.3}
-"""How far the answers are apart at the least, of usual cars."""
+APART = {"C": (0.08, 0.25), "phi_B": (0.3, 0.45)}
+"""How far the answers are apart at the least, of usual cars, and how far at the most that counts."""
 
 LEAST = {"C": 0.01, "phi_B": 0.05}
 """Of the halves, for the noise of the torque, which acts on the car and is not that of the speed."""
@@ -172,7 +172,9 @@ def identify_step(recording: Measurement, vehicle: Mapping[str, Any], settings: 
         fits = [_fitted(plant, step, noise, vehicle, settings) for plant in PLANTS]
     best, other = sorted(fits, key=lambda found: found.error)
     unexplained = sqrt(max(1.0 - (EXPLAINED * noise / best.error) ** 2, 0.0))
-    apart = {name: max(abs(log(other.values[name] / value)), APART[name]) for name, value in best.values.items()}
+    apart = {
+        name: float(np.clip(abs(log(other.values[name] / value)), *APART[name])) for name, value in best.values.items()
+    }
     unlike = {name: hypot(LEAST[name], UNLIKE * unexplained * apart[name]) for name in apart}
     return replace(best, halves={name: hypot(half, unlike[name]) for name, half in best.halves.items()})
 
