@@ -144,7 +144,10 @@ def plain_c(system: System, steps: int) -> Run:
 
 
 class Contender(NamedTuple):
-    """A host, the build of the FMUs that it runs, and whether it is installed."""
+    """A host, the build of the FMUs that it runs, and whether it is installed.
+
+    The name of one that has threads ends in a star: its ratio to others is another one on another machine.
+    """
 
     name: str
     build: str
@@ -156,8 +159,8 @@ CONTENDERS = (
     Contender("our master", "native", compiled, LIBRARY is not None),
     Contender("our steps in Python", "native", in_python),
     Contender("plain C loop", "native", plain_c, os.name == "posix" and which(os.environ.get("CC", "cc")) is not None),
-    Contender("libcosim", "native", libcosim, find_spec("libcosimpy") is not None),
-    Contender("Ecos", "native", ecos, find_spec("ecospy") is not None),
+    Contender("libcosim*", "native", libcosim, find_spec("libcosimpy") is not None),
+    Contender("Ecos*", "native", ecos, find_spec("ecospy") is not None),
     Contender("fmpy", "native", by_fmpy),
     Contender("our master", "python", compiled, LIBRARY is not None),
     Contender("our steps in Python", "python", in_python),

@@ -16,7 +16,7 @@ from shutil import which
 from time import process_time
 from typing import Any
 
-from benchmarks import hosts, instructions, many_runs, start_up
+from benchmarks import commands, hosts, instructions, many_runs
 from benchmarks.hosts import CONTENDERS, MICRO, START, STEADY, STEP_SIZE
 from benchmarks.timed import Timed
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
@@ -38,7 +38,8 @@ SPEEDS = (4.0, 10.0, 20.0, 30.0, 40.0)
 LENGTHS = (6.0, 60.0, 600.0)
 """Of runs in s."""
 
-CARS = (1, 10, 100)
+ENSEMBLES = (96, 384)
+"""Runs, from whose processor times follow that of a start and that of a further run."""
 
 CRUISING = replace(STEADY, v_0=10.0, T_driver=lines((0.0, 10.0)))
 """Of any length, without getting fast."""
@@ -88,8 +89,11 @@ def hosts_table(best: Mapping[str, Mapping[hosts.Contender, hosts.Run]]) -> Tabl
             numbers = cost, STEP_SIZE * MICRO / cost, cell(cost / limit)
             rows[f"{plant}, {contender.name}, {contender.build}"] = numbers
     missing = [contender.name for contender in CONTENDERS if not contender.present]
+    note = "* has threads: its ratio is another one on another machine."
     columns = (Column("a step", "µs", 2), Column("times real time", decimals=0), Column("over plain C", decimals=2))
-    return Table("plant, host, FMUs", columns, rows, f"Not installed: {', '.join(missing)}." if missing else "")
+    return Table(
+        "plant, host, FMUs", columns, rows, f"{note} Not installed: {', '.join(missing)}." if missing else note
+    )
 
 
 def instructions_table() -> Table:
@@ -108,15 +112,20 @@ def growth(least: Mapping[tuple[Any, ...], Cost], case: str, columns: Sequence[C
     return Table(f"plant, {case}", (*columns, Column("ratio", decimals=2)), rows)
 
 
-def of_cars(plant: str, runs: int) -> Cost:
-    """Milliseconds a run, of so many on all cores."""
-    return (many_runs.many(plant, runs)[0] / runs * 1e3,)
+def ensembles_table() -> Table:
+    """What many runs of a tip-in with their metrics cost at the start, and each of them."""
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for plant in PLANTS:
+        for how in ("one by one", "in lanes"):
+            few, many = (many_runs.many(plant, runs, how == "in lanes")[1] for runs in ENSEMBLES)
+            marginal = (many - few) / (ENSEMBLES[1] - ENSEMBLES[0])
+            rows[f"{plant}, {how}"] = few - ENSEMBLES[0] * marginal, 1e3 * marginal
+    return Table("plant, runs", (Column("start", "s", 2), Column("a run", "ms", 1)), rows)
 
 
 def commands_table(least: Mapping[str, float]) -> Table:
-    base = least["python, import numpy, scipy"]
-    rows = {name: (1e3 * seconds, seconds / base) for name, seconds in least.items()}
-    return Table("command", (Column("time", "ms", 0), Column("ratio", decimals=2)), rows)
+    rows = {name: (1e3 * seconds, seconds / least[commands.UNIT]) for name, seconds in least.items()}
+    return Table("command", (Column("processor time", "ms", 0), Column("ratio", decimals=2)), rows)
 
 
 def measured(turns: int, duration: float) -> Measured:
@@ -130,14 +139,13 @@ def measured(turns: int, duration: float) -> Measured:
     best = {plant: hosts.measure(plant, round(duration / STEP_SIZE), turns) for plant in PLANTS}
     speeds = in_turns(turns, at_speed, [(plant, v, duration) for plant in PLANTS for v in SPEEDS])
     lengths = in_turns(turns, of_length, [(plant, each) for plant in PLANTS for each in LENGTHS])
-    cars = {(plant, n): of_cars(plant, n) for plant in PLANTS for n in CARS} if LIBRARY else {}
     step = Column("a step", "µs", 2)
     tables = {
         "steps": hosts_table(best),
         "speeds": growth(speeds, "m/s", (step,)),
         "lengths": growth(lengths, "s", (step, Column("memory", "MB", 0))),
-        "cars": growth(cars, "cars", (Column("a car", "ms", 1),)),
-        "commands": commands_table(start_up.measure(turns)),
+        "ensembles": ensembles_table(),
+        "commands": commands_table(commands.measure(turns)),
     }
     return Measured(tables | ({"instructions": instructions_table()} if which("valgrind") else {}))
 
