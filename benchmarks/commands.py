@@ -1,4 +1,4 @@
-"""What the commands take: `python -m benchmarks.commands`, as ratios of processor times to the start of numpy and scipy.
+"""What commands take: `python -m benchmarks.commands`, as ratios of processor times to the start of numpy and scipy.
 
 The contenders take turns in processes of their own; the least of all turns is shown. What they start counts too.
 """

@@ -97,7 +97,7 @@ def linear_car(results: np.ndarray, parameters: Mapping[str, float], first: int)
     columns = [fields.index(name) for name in STATES]
 
     def derivative(values: Sequence[Any]) -> list[Any]:
-        *x, T_ref = map(float, values)
+        *x, T_ref = values
         return list(SYSTEM.derivative(SYSTEM.State(*x), PLANT.Input(T_mot=T_ref), p))
 
     x = _states(at_samples(results)[first:], car)
@@ -108,10 +108,10 @@ def linear_car(results: np.ndarray, parameters: Mapping[str, float], first: int)
         middle[PHI] = 0.0  # the torque of the gear is linear in it
         at = np.zeros(len(fields) + 1)
         at[columns] = middle
-        AB = rates(derivative, list(at), [*columns, len(fields)]).mean[columns]
+        AB = rates(derivative, at.tolist(), [*columns, len(fields)]).mean[columns]
         A.append(AB[:, :-1])
         B = AB[:, -1]
-        c.append(np.array(derivative(list(at)))[columns] - A[-1] @ middle)
+        c.append(np.array(derivative(at.tolist()))[columns] - A[-1] @ middle)
     piece = np.repeat(np.arange(len(ends)), np.diff([*ends, len(x)]))
     return LinearCar(np.array(A), B, np.array(c), piece, car.C, car.phi_B, x[0])
 
