@@ -106,6 +106,19 @@ class Browser:
         self._at(point).click().perform()
         self.painted()
 
+    def press(self, *keys: str) -> str:
+        """Keys as `selenium.webdriver.Keys` names them, or characters, one after the other.
+
+        Returns:
+            what has the focus then: its id, or what is written on it.
+        """
+        from selenium.webdriver import ActionChains, Keys
+
+        for key in keys:
+            ActionChains(self.chrome, duration=50).send_keys(getattr(Keys, key, key)).perform()
+        self.painted()
+        return str(self.js("document.activeElement.id || document.activeElement.textContent"))
+
     def _at(self, point: tuple[float, float]) -> Any:
         from selenium.webdriver import ActionChains
 

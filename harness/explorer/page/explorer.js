@@ -43,7 +43,7 @@ function ask(change, by) {
   waiting = {wanted, by, since: performance.now()};
   if (!underWay || performance.now() - underWay.since > LATE) go();
   follow();
-  link(false);
+  link();
 }
 
 let underWay = null;
@@ -187,11 +187,16 @@ function read(hash) {
 
 let linked;
 
-// While a slider moves the present entry of the history follows; `entry`: what follows is a new one.
-function link(entry) {
+// While a slider moves the present entry of the history follows.
+function link() {
   clearTimeout(linked);
-  if (entry && location.hash !== written(wanted)) history.pushState(null, "", written(wanted));
-  else linked = setTimeout(() => history.replaceState(null, "", written(wanted)), 150);
+  linked = setTimeout(() => history.replaceState(null, "", written(wanted)), 150);
+}
+
+// What follows is a new entry.
+function enter() {
+  clearTimeout(linked);
+  history.pushState(null, "", written(wanted));
 }
 
 addEventListener("popstate", () => ask(read(location.hash)));
@@ -208,7 +213,7 @@ function bind(element, event, change, show) {
   element.addEventListener(event, () => {
     const changed = change(element);
     if (!changed) return;
-    history.pushState(null, "", written(wanted));
+    enter();
     ask(changed);
   });
   controls.push((of) => show(element, of));
@@ -249,10 +254,17 @@ function knob(parent, {name, low, high, least, most, value, unit, meaning}, kind
     refuse("");
     return ask(change(to), name);
   };
-  range.addEventListener("pointerdown", () => history.pushState(null, "", written(wanted)));
+  let entered = false; // by keys, since it has the focus
+  range.addEventListener("pointerdown", enter);
+  range.addEventListener("blur", () => { entered = false; });
+  range.addEventListener("keydown", ({key}) => {
+    if (entered || !/^(Arrow|Page|Home|End)/.test(key)) return;
+    enter();
+    entered = true;
+  });
   range.addEventListener("input", () => turn(Number(Number(range.value).toPrecision(3))));
   typed.addEventListener("change", () => {
-    history.pushState(null, "", written(wanted));
+    enter();
     turn(typed.value.trim() === "" ? NaN : Number(typed.value));
   });
   back.addEventListener("click", () => turn(value));
@@ -301,7 +313,7 @@ function build() {
   by_hand();
   get("hold").addEventListener("click", hold);
   get("release").addEventListener("click", () => { held = []; draw(); });
-  get("reset").addEventListener("click", () => { history.pushState(null, "", written(wanted)); ask(structuredClone(start)); });
+  get("reset").addEventListener("click", () => { enter(); ask(structuredClone(start)); });
   get("save car").addEventListener("click", () => save("car.toml", "A car", car_entries()));
   get("save gains").addEventListener("click", () => save("gains.toml", `Gains of ${data.ours}`, {...data.files.gains, ...gains()}));
   for (const [name, {guid, sources}] of Object.entries(data.loops.fmus)) {
@@ -362,7 +374,7 @@ function place_of(event) {
 }
 
 function move(points, entry) {
-  if (entry) history.pushState(null, "", written(wanted));
+  if (entry) enter();
   ask({free: {...wanted.free, T_driver: points.toSorted(([a], [b]) => a - b)}});
 }
 
@@ -386,14 +398,14 @@ function sketch({T_driver, duration}) {
     circle.addEventListener("keydown", (event) => {
       const steps = {ArrowLeft: [-0.05, 0], ArrowRight: [0.05, 0], ArrowUp: [0, 2], ArrowDown: [0, -2]}[event.key];
       if (event.key === "Delete" && others.length) move(others, true);
-      else if (steps) move(to([Math.max(Number((t + steps[0]).toFixed(3)), 0), T + steps[1]]));
+      else if (steps) move(to([Math.max(Number((t + steps[0]).toFixed(3)), 0), T + steps[1]]), !event.repeat);
       else return;
       event.preventDefault();
     });
     circle.addEventListener("pointerdown", (event) => {
       event.preventDefault();
       circle.focus();
-      history.pushState(null, "", written(wanted));
+      enter();
       const drag = (moved) => { // between its neighbours
         const [at, value] = place_of(moved), low = T_driver[k - 1]?.[0] ?? 0, high = T_driver[k + 1]?.[0] ?? duration;
         move(to([Math.min(Math.max(at, low), high), value]));

@@ -37,6 +37,23 @@ class Loops {
     this.content = content;
     this.code = new WebAssembly.Instance(module, {}).exports;
     this.code._initialize?.();
+    this.columns = {}; // of the last run, which the next one overwrites
+    this.given = new WeakMap(); // what a signal gives: few moves change an input
+  }
+
+  // A signal at times that are `ahead` behind those of all steps, and at the first one.
+  values(signal, count, step, ahead) {
+    const known = this.given.get(signal);
+    if (known?.length === count + 1) return known;
+    const found = new Float64Array(count + 1);
+    for (let k = 0; k <= count; k++) found[k] = signal(k * step + ahead);
+    this.given.set(signal, found);
+    return found;
+  }
+
+  column(key, count) {
+    if (this.columns[key]?.length !== count + 1) this.columns[key] = new Float64Array(count + 1);
+    return this.columns[key];
   }
 
   // Why the module refused.
@@ -60,7 +77,7 @@ class Loops {
     }
   }
 
-  // The columns of a run: a row for each k step. Yields between parts of it.
+  // The columns of a run, until the next one: a row for each k step. Yields between parts of it.
   *run(name, {parameters, inputs, duration, step}) {
     const loop = this.content.loops[name], number = Object.keys(this.content.loops).indexOf(name);
     const count = Math.floor(duration / step + 1e-6), most = this.content.rows - 1;
@@ -70,16 +87,16 @@ class Loops {
     const given = [...this.found(name, parameters, step)], due = given.filter(({at}) => at >= 0).sort((a, b) => a.at - b.at);
     for (const each of given) if (each.at < 0) set(each);
     const signals = Object.entries(loop.inputs).map(([key, [offset, real]]) =>
-      ({offset, real, ahead: key.startsWith("plant.") ? 0.5 * step : 0, of: inputs[key]}));
-    const columns = {time: new Float64Array(count + 1)}, width = loop.size / 8; // of a row, in doubles
-    for (const key of Object.keys(loop.columns)) columns[key] ??= new Float64Array(count + 1);
+      ({offset, real, values: this.values(inputs[key], count, step, key.startsWith("plant.") ? 0.5 * step : 0)}));
+    const columns = Object.fromEntries(["time", ...Object.keys(loop.columns)].map((key) => [key, this.column(key, count)]));
+    const width = loop.size / 8; // of a row, in doubles
     const table = new Float64Array(this.code.memory.buffer, this.code.rows(), width * this.content.rows);
     const whole = new Int32Array(table.buffer, table.byteOffset, 2 * table.length);
     const fill = (first, last) => {
       for (let k = first; k <= last; k++) table[(k - base) * width] = k * step;
-      for (const {offset, real, ahead, of} of signals)
-        if (real) for (let k = first; k <= last; k++) table[(k - base) * width + offset / 8] = of(k * step + ahead);
-        else for (let k = first; k <= last; k++) whole[2 * (k - base) * width + offset / 4] = of(k * step + ahead);
+      for (const {offset, real, values} of signals)
+        if (real) for (let k = first; k <= last; k++) table[(k - base) * width + offset / 8] = values[k];
+        else for (let k = first; k <= last; k++) whole[2 * (k - base) * width + offset / 4] = values[k];
     };
     const read = (first, last) => {
       for (const [key, offset] of Object.entries(loop.columns)) {

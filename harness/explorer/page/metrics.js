@@ -3,9 +3,8 @@
 
 const TO_SETTLE = {span: 0.2, settled: 0.05, fitted: 0.9, least: 0.1}, WINDOW = [-0.2, 4], WITHHELD = 2;
 
-// Of the columns of a run in steps of `step` s, for the manoeuvre, at the samples of the controller T_s apart.
-function metrics(run, {t_0, dT}, step, T_s) {
-  const sampled = atSamples(run, Math.round(T_s / step));
+// Of the columns of a run, and of these at the samples of the controller, T_s apart, for the manoeuvre.
+function metrics(run, sampled, {t_0, dT}, T_s) {
   const t = sampled.time, T_gear = sampled["plant.T_gear"], demand = sampled["controller.T_driver"];
   const piece = (x, from, to) => x.slice(first(t, from - 1e-9), first(t, to + 1e-9, true));
   const windowed = (x) => (dT === null ? x : piece(x, t_0 + WINDOW[0], t_0 + WINDOW[1]));
@@ -61,15 +60,15 @@ function settlingTime(T_gear, T_s, t_0, dT) {
 
 // Half of the peak to peak of so many samples from each one on.
 function amplitude(x, length) {
-  const swing = extreme(x, length, Math.max), least = extreme(x, length, Math.min);
-  return swing.map((most, k) => (most - least[k]) / 2);
+  const swing = largest(x, length), below = largest(x.map((value) => -value), length);
+  return swing.map((most, k) => (most + below[k]) / 2);
 }
 
-// The largest or smallest of so many neighbours: of twice as many again and again, then of two that overlap.
-function extreme(x, length, of) {
+// The largest of so many neighbours: of twice as many again and again, then of two that overlap.
+function largest(x, length) {
   const joined = (before, shift) => {
     const found = new Float64Array(Math.max(before.length - shift, 0));
-    for (let k = 0; k < found.length; k++) found[k] = of(before[k], before[k + shift]);
+    for (let k = 0; k < found.length; k++) found[k] = before[k] > before[k + shift] ? before[k] : before[k + shift];
     return found;
   };
   let width = 1;

@@ -1,6 +1,8 @@
 "use strict";
 // Answers what a page asks for: one run of the loop, with what it is worth.
 
+const ENABLE = [() => 0, () => 1];
+
 class Answerer {
   // data: of content.py; code: bytes of the module.
   constructor(data, code) {
@@ -8,6 +10,7 @@ class Answerer {
     this.loops = new Loops(new WebAssembly.Module(code), data.loops);
     this.followers = new Followers(this.loops, data.follow);
     this.followed = ["", {}];
+    this.signals = new WeakMap();
     this.last = {};
   }
 
@@ -43,13 +46,20 @@ class Answerer {
     this.require(name, own);
     const key = JSON.stringify([name, wanted.manoeuvre, wanted.manoeuvre === "free" && wanted.free, wanted.road, own]);
     if (this.last[controller] === key) return {same: true};
-    const inputs = Object.fromEntries(Object.entries(manoeuvre.inputs).map(([input, data]) =>
-      [input, typeof data === "function" ? data : signal(data)]));
-    inputs["controller.enable"] = () => Number(controller !== null);
+    const inputs = Object.fromEntries(Object.entries(manoeuvre.inputs).map(([input, data]) => [input, this.signal(data)]));
+    inputs["controller.enable"] = ENABLE[Number(controller !== null)];
     const {duration, start} = manoeuvre;
     const run = yield* this.loops.run(name, {parameters: {...own, ...start, ...this.road(wanted)}, inputs, duration, step});
     this.last[controller] = key;
-    return {run: atSamples(run, Math.round(T_s / step)), worth: metrics(run, manoeuvre, step, T_s)};
+    const sampled = atSamples(run, Math.round(T_s / step));
+    return {run: sampled, worth: metrics(run, sampled, manoeuvre, T_s)};
+  }
+
+  // The same function for the same data.
+  signal(data) {
+    if (typeof data === "function") return data;
+    if (!this.signals.has(data)) this.signals.set(data, signal(data));
+    return this.signals.get(data);
   }
 
   road({road, typed: text}) {

@@ -253,6 +253,51 @@ def test_a_value_out_of_bounds_is_refused_beside_its_slider(opened: Browser) -> 
     assert opened.js(refusal) == ""
 
 
+FIRST = ("plant", "manoeuvre", "control", "other controllers beside it", "gains", "knob character value")
+
+
+def test_the_keyboard_reaches_all_in_order_and_turns_a_slider_and_goes_back(opened: Browser) -> None:
+    assert [opened.press("TAB") for _ in range(9)] == [*FIRST, "knob character", "knob k_d value", "knob k_d"]
+    assert opened.js("getComputedStyle(document.activeElement).outlineStyle") == "solid"
+    pressed(opened, "ARROW_RIGHT")
+    once = opened.js("wanted.gains.k_d")
+    pressed(opened, "ARROW_RIGHT")
+    assert opened.js("wanted.gains.k_d") - once == pytest.approx(once - 2.55, abs=0.01)
+    settled(opened, "history.back()")
+    assert opened.js("wanted.gains") == {}
+    opened.js("get('knob k_d value').select()")
+    assert opened.press("-", "1", "ENTER") == "knob k_d value"
+    assert "is allowed" in opened.js(
+        "document.activeElement.closest('.knob').querySelector('[role=alert]').textContent"
+    )
+    assert opened.js("document.activeElement.getAttribute('aria-invalid')") == "true"
+
+
+def test_the_keyboard_draws_a_manoeuvre_and_zooms(opened: Browser) -> None:
+    opened.js("get('manoeuvre').focus()")
+    pressed(opened, "HOME")
+    assert opened.js("[wanted.manoeuvre, wanted.free.T_driver]") == ["free", [[0, -12], [1, -12], [1, 100]]]
+    opened.js("document.querySelector('#drawn circle:last-of-type').focus()")
+    pressed(opened, "ARROW_UP")
+    pressed(opened, "ARROW_RIGHT")
+    assert opened.js("wanted.free.T_driver.at(-1)") == [1.05, 102]
+    pressed(opened, "DELETE")
+    assert opened.js("wanted.free.T_driver") == [[0, -12], [1, -12]]
+    opened.js("document.querySelector('figure').focus()")
+    (start, end), speed = opened.figure("gear torque in N·m").x(), opened.figure("motor speed in rad/s")
+    opened.press("+")
+    assert speed.x() == pytest.approx((start + (end - start) / 4, end - (end - start) / 4))
+    opened.press("0")
+    assert speed.x() == (start, end)
+
+
+def pressed(browser: Browser, key: str) -> None:
+    """Presses a key and waits for the next curves."""
+    before = browser.js("document.body.dataset.drawn")
+    browser.press(key)
+    browser.until(f"document.body.dataset.drawn !== '{before}'")
+
+
 def test_a_run_is_held_and_a_manoeuvre_drawn_and_files_are_those_that_commands_take(
     opened: Browser, tmp_path: Path
 ) -> None:
