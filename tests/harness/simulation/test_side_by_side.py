@@ -4,7 +4,9 @@ import os
 import time
 from dataclasses import replace
 from pathlib import Path
+from shutil import copytree
 
+import numpy as np
 import pytest
 
 from driveline.fmus.lanes_here import lanes_here
@@ -59,6 +61,27 @@ def test_the_answers_are_those_of_single_runs(both_built, lanes, in_lanes, monke
     monkeypatch.setattr(many_runs, "lanes_here", lambda: 0)
     assert found == pytest.approx(run_many(swing(both_built), cases, workers=1), abs=1e-6)
     assert sum(in_lanes) == 32
+
+
+@pytest.mark.slow
+def test_libraries_with_other_constants_in_the_cache_are_made_again(both_built, lanes, in_lanes, monkeypatch, tmp_path):
+    cases = [("TwoMassDriveline", k) for k in range(4)]
+    found = run_many(swing(both_built), cases, workers=1)
+    there = copytree(tmp_path, tmp_path / "other")
+    libraries = {path: path.read_bytes() for path in there.glob("*/lanes/*/*.so")}
+    assert len(libraries) == 4
+    for path, content in libraries.items():
+        numbers = np.frombuffer(content[: len(content) // 8 * 8]).copy()
+        constants = (np.abs(numbers) > 1e-6) & (np.abs(numbers) < 1e6)
+        assert constants.sum() > 20
+        numbers[constants] *= 1.001
+        path.write_bytes(numbers.tobytes() + content[len(content) // 8 * 8 :])
+    monkeypatch.setenv("XDG_CACHE_HOME", str(there))
+    _library.cache_clear()
+    assert run_many(swing(both_built), cases, workers=1) == found
+    _library.cache_clear()
+    assert sum(in_lanes) == 16
+    assert {path: path.read_bytes() for path in libraries} == libraries
 
 
 def test_few_cases_and_other_blocks_go_alone(both_built, built, lanes, in_lanes):
