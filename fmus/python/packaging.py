@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 from threading import Lock
 from types import ModuleType
 
+import fmpy
 from pythonfmu.builder import FmuBuilder
 
 from ..archive import guid_of, write_archive
@@ -21,6 +22,7 @@ from ..description.documentation import documentation
 from ..description.model_description import model_description
 from ..errors import full_disk
 from ..fmu import Fmu
+from ..native.compiler import WHOLE, CompilerError, host_binaries
 from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES, LOG_DISCARD
 from .bundle import bundle, package_name, package_text, script_text
@@ -41,6 +43,8 @@ qemu-system-arm on the PATH, on Linux: the controller runs on the Cortex-M4F tha
 
 HTML_EMULATOR = """ The controller itself runs on a
 Cortex-M4F that qemu-system-arm emulates, which must be on the PATH (on Linux)."""
+
+ENTRY = Path(__file__).with_name("entry.c")
 
 SLAVE_MODULES = ("fmi2slave", "logmsg", "default_experiment", "_version", "enums", "variables")
 """Modules of PythonFMU that an FMU needs when it runs."""
@@ -95,9 +99,23 @@ def _resources_and_binaries(fmu: Fmu) -> dict[str, bytes]:
                 moved[f"resources/{package}/pythonfmu/{path.name}"] = content
         elif path.parts[0] in ("resources", "binaries"):
             moved[name] = content
+    moved |= _entry(fmu.name, moved)
     moved[f"resources/{package}/pythonfmu/__init__.py"] = b""
     moved[f"resources/{package}/__init__.py"] = package_text(fmu, ".pythonfmu")
     return moved
+
+
+def _entry(name: str, packed: dict[str, bytes]) -> dict[str, bytes]:
+    """Stands between the host and PythonFMU's binary for Linux, which then has another name: entry.c. Without a C
+    compiler, and elsewhere, the binary stays alone."""
+    binary = f"binaries/linux64/{name}.so"
+    if fmpy.platform != "linux64":
+        return {}
+    try:
+        entry = host_binaries(name, {WHOLE: ENTRY.read_bytes()})
+    except CompilerError:
+        return {}
+    return {f"binaries/linux64/{name}.python.so": packed[binary], binary: entry[binary]}
 
 
 def _packed_by_pythonfmu(fmu: Fmu, package: str, files: dict[str, bytes]) -> dict[str, bytes]:

@@ -89,7 +89,9 @@ def dismiss_guard(resources: str, model_identifier: str) -> None:
     In any other host it is destroyed when the process ends, before the binary's own static objects are: what
     is registered last with the C library is called first, and the binary stays loaded once it was.
     """
-    path = Path(resources).parent / "binaries" / "linux64" / f"{model_identifier}.so"
+    binaries = Path(resources).parent / "binaries" / "linux64"
+    inner = binaries / f"{model_identifier}.python.so"
+    path = inner if inner.exists() else binaries / f"{model_identifier}.so"
     if sys.platform != "linux" or not path.exists():
         return
     binary = ctypes.CDLL(str(path), mode=os.RTLD_NOLOAD | os.RTLD_NOW)

@@ -81,12 +81,8 @@ def test_an_fmu_with_clocks_is_run_in_event_mode_or_it_is_said_that_it_was_not(s
 
 
 @pytest.mark.parametrize("name", slow(OURS, but=["WheelSpeedCan.fmu", "DampingController.fmu"]))
-def test_our_python_fmus_need_only_that_the_host_lends_them_python(built, name):
-    found = broken(built / name)
-    assert found.keys() <= {"symbols", "token"}  # PythonFMU does not look at the token
-    if sys.platform == "linux":
-        severity, text = found["symbols"]
-        assert (severity, text.partition(" and ")[0].partition(" needs ")[2][:3]) == ("error", "_Py")
+def test_our_python_fmus_have_no_findings_on_linux(built, name):
+    assert broken(built / name).keys() <= ({"symbols", "token"} if sys.platform != "linux" else set())
 
 
 IN_BOTH = (
