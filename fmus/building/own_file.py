@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Sequence
+from functools import cache
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from traceback import extract_tb
@@ -37,6 +38,18 @@ def fmu_in(path: Path) -> Fmu:
         del sys.modules[name]
         raise BuildError(f"{path} has no line `FMU = Fmu(BLOCK, stop_time=10.0)`")
     return fmu
+
+
+@cache
+def fmu_of(block: str) -> Fmu:
+    """An FMU of the project by its name, or one of the user's own by its path, with its Python file beside it.
+
+    Raises:
+        BuildError: there is no such file.
+    """
+    from ..catalogue import EVERY
+
+    return EVERY[block] if block in EVERY else fmu_in(Path(block).with_suffix(".py"))
 
 
 def place(error: BaseException, files: Sequence[Path]) -> str:

@@ -1,11 +1,12 @@
-"""Analyses the loop with a controller of the project and prints its margins with the true delays: gain, phase, delay
-and M_s. The output folder gets margins.csv, sensitivity.csv, analysis.json (all results, and what made them) and the
-figures: Bode, Nyquist, poles, the describing function of the backlash, the sensitivity of the metrics.
+"""Analyses the loop with a controller of the project, or of a Python file, and prints its margins with the true delays:
+gain, phase, delay and M_s. The output folder gets margins.csv, sensitivity.csv, analysis.json (all results, and what
+made them) and the figures: Bode, Nyquist, poles, the describing function of the backlash, the sensitivity of metrics.
 
 The linear model is that of the blocks themselves, with the teeth in contact.
 
 examples:
   driveline analyse --controller SpeedWashout --output results/washout
+  driveline analyse --controller my_controller.py --plant TwoMassDriveline
   driveline analyse --vehicle examples/cars/van.toml --parameters van_gains.toml --output results/van
   driveline analyse --plant TwoMassDriveline --json > analysis.json
 """
@@ -14,19 +15,22 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from ..loop.places import PLANTS
+from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
 from .arguments import option
 from .jobs import distinguishing, job
-from .options import FmuFolder, OurController, Replacing, output, record
+from .options import FmuFolder, ParameterFiles, Replacing, controller_with_equations, output, record
 from .printing import JsonPrinting
 from .settings import warn_of_gains
 
 
 @record
-class Arguments(OurController, FmuFolder, Replacing, JsonPrinting):
+class Arguments(ParameterFiles, FmuFolder, Replacing, JsonPrinting):
     plant: tuple[str, ...] = option(
         (), f"the car: {' or '.join(PLANTS)} (repeatable; default: both)", choices=PLANTS, metavar="NAME"
+    )
+    controller: str = controller_with_equations(
+        PLACES["controller"][0], "damping control: one of the project (default: %(default)s), or a Python file"
     )
     output: Path = output("results/analyse", "the tables and the figures")
 

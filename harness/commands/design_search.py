@@ -11,7 +11,17 @@ from ..base.errors import DrivelineError
 from ..loop.places import BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..loop.settings import Settings
 from .arguments import option, record
-from .options import FmuFolder, Replacing, counted, expert, file_of, output_folder, seed, share
+from .options import (
+    FmuFolder,
+    Replacing,
+    controller_with_equations,
+    counted,
+    expert,
+    file_of,
+    output_folder,
+    seed,
+    share,
+)
 from .printing import Printing, write_toml
 
 if TYPE_CHECKING:
@@ -38,7 +48,9 @@ class Search(FmuFolder, Replacing, Printing):
     vehicle: Path | None = file_of("the car (default: that of all blocks)")
     output: Path | None = file_of("for the gains")
     search: Path | None = searching(None, "search, in this folder", output_folder, metavar="FOLDER")
-    controller: str | None = _of_search("controller", "whose parameters", choices=PLACES["controller"], metavar="NAME")
+    controller: str | None = controller_with_equations(
+        None, f"whose parameters, a Python file too (default: {DEFAULTS['controller']})", "searching"
+    )
     evaluations: int | None = _of_search(
         "evaluations", "how many candidates", parse=counted(1, 100_000), metavar="COUNT"
     )
@@ -81,11 +93,9 @@ def run_search(args: Search, folder: Path) -> int:
     with dask_executor(args.scheduler) as executor:
         visited = tune(evaluation, where, evaluations, number, folder, args.replace, [args.vehicle], executor=executor)
     name = args.vehicle.name if args.vehicle else "the default car"
-    text = chosen(controller, where, visited, character, name, number)
+    text, called = chosen(controller, where, visited, character, name, number), Path(controller).stem
     write_toml(text, gains, args.replace or args.output is None)
-    figures = plot_front(
-        visited, where, character, f"{controller}, {name}: {len(visited)} candidates", folder / "front"
-    )
+    figures = plot_front(visited, where, character, f"{called}, {name}: {len(visited)} candidates", folder / "front")
     if not args.silent:
         print_table(choices_table(visited, where, sorted({*SHOWN, character})))
     args.say(f"gains:      {gains} (character {character:g})")
@@ -120,7 +130,7 @@ def chosen(
     found = best(visited, character)
     costs, program = found.costs, version("driveline-damping")
     comment = f"""\
-Parameters of the {controller} for {car}, by `driveline design --search` (driveline-damping {program}).
+Parameters of the {Path(controller).stem} for {car}, by `driveline design --search` (driveline-damping {program}).
 Character {character:g} (0 sport, 1 comfort), the best of {len(visited)} candidates, seed {number}. Cost \
 {costs.total(character):.3f}: swing
 {costs.swing:.3f}, comfort {costs.comfort:.3f}, response {costs.response:.3f}; computed gains of the DampingController \

@@ -11,7 +11,8 @@ from typing import Any
 
 from ...fmus.written_numbers import real, whole
 from ..base.errors import DrivelineError
-from ..base.plain_text import quoted
+from ..base.known_names import nearest
+from ..base.plain_text import plain, quoted
 from ..cosimulation.limits import USUAL_LIMITS, Limits
 from ..loop.places import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..views.figure_options import KINDS, USUAL_KINDS, FigureOptions
@@ -205,6 +206,33 @@ class ParameterFiles:
 
     vehicle: Path | None = file_of("what belongs to the car, for every block that has it")
     parameters: Path | None = file_of("what is set in the controller, as `driveline design` writes it")
+
+
+def _with_equations(text: str) -> str:
+    names = PLACES["controller"]
+    if Path(text).suffix == ".fmu":
+        raise ArgumentTypeError(
+            f"{text} does not tell its equations, nor in which range its parameters are searched: give the Python file "
+            f"that it was built from, or one of {', '.join(names)} (`driveline compare` and `robustness` take any FMU)"
+        )
+    if text not in names and Path(text).suffix != ".py":
+        raise ArgumentTypeError(f"{plain(text, 60)} is unknown; {nearest(text, names)} (or give a Python file)")
+    return text
+
+
+def _in_place(controller: str | None) -> str | None:
+    if controller is None or Path(controller).suffix != ".py":
+        return controller
+    from ..loop.own_controller import with_equations  # not for help
+
+    return with_equations(controller)
+
+
+def controller_with_equations(default: str | None, help: str, group: str | None = None) -> Any:
+    """--controller, of one whose equations are asked for: of the project, or in a Python file."""
+    complete = names_or_files(PLACES["controller"], ("py",), "controller")
+    how = {"metavar": "NAME|FILE.py", "complete": complete, "group": group}
+    return option(default, help, _with_equations, read=_in_place, **how)
 
 
 @record

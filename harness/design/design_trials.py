@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...fmus.building.own_file import fmu_of
 from ...fmus.building.parameter_files import for_instances, read_vehicle
-from ...fmus.catalogue import EVERY
 from ..loop.places import PLACES
 from ..loop.settings import Settings
 from ..loop.settings import settings as settings_of
@@ -48,7 +48,7 @@ def own_gains(vehicle: Path | None) -> dict[str, float]:
 def loop_records(plant: str, controller: str = PLACES["controller"][0]) -> dict[str, Any]:
     """The declared parameters of the blocks of a loop, by their places, with a plant and a controller of ours."""
     blocks = {place: names[0] for place, names in PLACES.items()} | {"plant": plant, "controller": controller}
-    return {place: EVERY[name].block.Parameters for place, name in blocks.items()}
+    return {place: fmu_of(name).block.Parameters for place, name in blocks.items()}
 
 
 def loop_parameters(values: Mapping[str, Any], plant: str, controller: str = PLACES["controller"][0]) -> dict[str, Any]:

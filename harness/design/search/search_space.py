@@ -3,9 +3,10 @@
 from collections.abc import Mapping, Sequence
 from functools import cache
 from math import exp, isclose, log
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from ....fmus.catalogue import EVERY
+from ....fmus.building.own_file import fmu_of
 from ....fmus.description.variables import Variable, interface
 from ...base.errors import DrivelineError
 from ..design import design, literal_observer
@@ -68,7 +69,7 @@ class Space(NamedTuple):
 
 def declared_parameters(controller: str) -> dict[str, Variable]:
     """The parameters of a controller by name, as they are declared."""
-    return {each.name: each for each in interface(EVERY[controller].block) if each.causality == "parameter"}
+    return {each.name: each for each in interface(fmu_of(controller).block) if each.causality == "parameter"}
 
 
 def space(controller: str, car: Mapping[str, Any]) -> Space:
@@ -97,7 +98,10 @@ def space(controller: str, car: Mapping[str, Any]) -> Space:
         if getattr(variable.declaration, "search", None)
     ]
     if not searched:
-        raise DrivelineError(f"{controller} has no parameter that is searched")
+        raise DrivelineError(
+            f"{Path(controller).stem} has no parameter that is searched: none is declared with a range, as "
+            "Real(..., search=(0.5, 5.0))"
+        )
     found = {each.name for each in searched}
     return Space(tuple(searched), {name: rounded(value) for name, value in here.items() if name not in found})
 

@@ -24,6 +24,9 @@ SETTLING = 0.5
 LAST_DIGIT = 1e-9
 """In rad/s; a motor speed that does not change by a digit is frozen."""
 
+NEEDED = ("T_driver", "omega_1_meas", MESSAGE, "valid", "counter", "enable", "status", "T_max")
+"""Inputs, state and parameter of a controller that is settled."""
+
 NOT_MEASURED = ("T_driver", "valid", "counter", "enable", "direction", "alive", "slip_control")
 """Inputs of a controller that carry no measurement."""
 
@@ -120,6 +123,9 @@ def settled(point: Point, drive: LinearPlant) -> tuple[Any, Any, Any]:
         NotLinear: the controller does not damp there.
     """
     block, p, bus = point.controller, point.of("controller", point.controller), messages(point)
+    known = {*block.Input._fields, *block.State._fields, *block.Parameters._fields}
+    if lacking := [name for name in NEEDED if name not in known]:
+        raise NotLinear(f"{block.name} has no {', '.join(lacking)}; `driveline.supervised` makes controllers that have")
     last = round(SETTLING / T_S)
     given = {name: k for k, name in enumerate(drive.outputs) if name in block.Input._fields}
     # the wheels of the validation vehicle have not settled where its shafts differ; with the car they follow the motor

@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple
 
-from ....fmus.catalogue import EVERY
+from ....fmus.building.own_file import fmu_of
 from ...base.errors import DrivelineError
 from ...cosimulation.parameter_changes import require_constant
 from ...loop.settings import Settings
@@ -124,8 +125,8 @@ def point_of(plant: str, controller: str, parameters: Mapping[str, Any]) -> Poin
     for name, value in parameters.items():
         place, _, parameter = name.partition(".")
         given.setdefault(place, {})[parameter] = value
-    plant_block: Any = EVERY[plant].block
-    block: Any = EVERY[controller].block
+    plant_block: Any = fmu_of(plant).block
+    block: Any = fmu_of(controller).block
     T_max = block.Parameters(**given.get("controller", {})).T_max
     return Point(plant_block, block, given, v=SPEEDS[1] / 3.6, T=TORQUE * T_max)
 
@@ -196,7 +197,7 @@ def analyse(settings: Mapping[str, Settings]) -> Analysis:
         return sensitivity.sensitivity(plant, manoeuvre, parameter, (small, nominal, large))
 
     return Analysis(
-        controller,
+        Path(controller).stem,
         [found[Part(plant, f"{speed:g}")] for plant in plants for speed in SPEEDS],
         {plant: {name: found[Part(plant, name)] for name in BY_NAME} for plant in plants},
         {plant: found[Part(plant, "backlash")][0] for plant in plants},

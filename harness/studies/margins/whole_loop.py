@@ -5,6 +5,7 @@ from typing import Any, Unpack
 
 from ...base.argument_kinds import require_each
 from ...design.design_trials import loop_parameters
+from ...loop.own_controller import with_equations
 from ...loop.places import PLACES, PLANTS
 from ...loop.settings import RunChanges, Settings
 from .loop_analysis import Analysis
@@ -25,18 +26,21 @@ def analyse(
             print(at.speed, at.margins.phase_margin)  # in km/h and rad
 
     Args:
-        plants, controller: names of blocks of the project.
+        plants: names of plants of the project.
+        controller: one of the project, or a Python file that declares one, as `driveline build` takes it.
         car: entries of a vehicle file and of gains, in SI units, as `read_files` gives them; what they do not name is
             that of the default car.
         changes: fields of the settings that are to be others, as of `simulate`, for all runs.
 
     Raises:
         DrivelineError: the controller is not linear in contact, or the loop with it is not stable.
+        BuildError: a Python file declares no FMU, or it cannot be built.
         TypeError: a single plant is given.
     """
     if "plant" in changes:  # for scripts that no type checker reads
         raise TypeError("analyse takes plants, and no single plant")
     require_each("plants", plants, str, "names of plants of the project")
+    controller = with_equations(controller)
     common = Settings(controller=controller).replace(**changes)
     return analysis(
         {
