@@ -107,6 +107,7 @@ STUDIES = (
     "plausible_drives",
     "replay",
     "identification",
+    "one_step",
     "design",
     "authority",
     "calibration",
