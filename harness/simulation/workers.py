@@ -36,6 +36,11 @@ Lost = BrokenProcessPool
 """Is raised where the process of a case was lost."""
 
 
+ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
+"""The environment of a worker: the cores are shared by processes, and threads of linear algebra that wait for each
+other take five times what they compute."""
+
+
 class Workers:
     """New interpreters (FMUs that run Python do not survive a fork); one that is lost is replaced.
 
@@ -108,7 +113,7 @@ class Workers:
 
     def _begin(self) -> None:
         with uninterrupted_children():  # else a lock that is being made would be left
-            self._pool = ProcessPoolExecutor(self._count, initializer=_begin, initargs=self._given)
+            self._pool = ProcessPoolExecutor(self._count, initializer=_begin, initargs=self._given, env=ONE_THREAD)
 
     def _begin_again(self) -> None:
         """Without one process the others are of no use either."""

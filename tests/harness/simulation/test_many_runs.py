@@ -87,8 +87,9 @@ def process(_case):
 def test_one_worker_is_this_process_and_others_share_the_cases():
     assert run_many(process, range(3), workers=1) == 3 * [os.getpid()]
     assert run_many(process, range(1)) == [os.getpid()]
-    others = run_many(lambda case: (Path("/").exists(), process(case)), range(3), workers=2)
+    others = run_many(lambda case: (os.environ["OPENBLAS_NUM_THREADS"], process(case)), range(3), workers=2)
     assert os.getpid() not in [number for _, number in others]
+    assert {threads for threads, _ in others} == {"1"}, "cores are not shared twice"
     assert run_many(process, []) == []
 
 
