@@ -15,7 +15,6 @@ from driveline.harness.loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS
 from driveline.harness.recordings import (
     alignment,
     channel_rules,
-    delays,
     force_balance,
     missing_values,
     plausibility,
@@ -125,9 +124,7 @@ def recording_checks() -> str:
 
 def recording_thresholds() -> str:
     """The numbers that decide in them, each with the measurement that it comes from."""
-    return _thresholds(
-        missing_values, channel_rules, force_balance, plausibility, relations, delays, signal_checks, alignment
-    )
+    return _thresholds(missing_values, channel_rules, force_balance, plausibility, relations, signal_checks, alignment)
 
 
 def identification_thresholds() -> str:

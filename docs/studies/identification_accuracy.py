@@ -171,7 +171,7 @@ def from_truth(recorded: Measurement, car: Car, true: Mapping[str, float]) -> Fo
     expected, behind = known(car.known)
     drive, _ = drive_of(recorded)
     predictor = Predictor(drive, of_sensors(drive, recorded.T_mot), behind)
-    start = expected._replace(d=0.01, lack_1=0.005, lack_phi=3e-5, lack_L=0.05, **true)
+    start = expected._replace(d=0.04, lack_1=0.15, lack_phi=1e-3, lack_L=1.0, **true)
     return search(predictor, start, FREE, expected._replace(d=expected.damping))
 
 

@@ -87,11 +87,8 @@ def run(args: Arguments) -> int:
     same = args.distinguishing | {"vehicle": vehicle, "free": sorted(set(args.free))}
     with job(args, output.with_suffix(".json"), same, {}, [output, all_found(output)], args.read) as made:
         identified = identify(recording, vehicle, list(dict.fromkeys(args.free)), args.say)
-        delays, warnings = (
-            (f"delay: {each}" for each in recording.delays),
-            (f"warning: {w}" for w in identified.warnings),
-        )
-        for line in (*delays, *car_file.identified_lines(identified), *warnings):
+        warnings = (f"warning: {warning}" for warning in identified.warnings)
+        for line in (*car_file.identified_lines(identified), *warnings):
             args.say(line)
         car_file.identified_car(identified)  # refuses what would make no vehicle file
         made.begin()

@@ -220,14 +220,14 @@ def diagnose_excitation(found: Found) -> Iterator[str]:
 
 
 def diagnose_second(apart: Sequence[str], second: Parameters) -> Iterator[str]:
-    """Where the estimate without the last quarter is another one.
+    """Where the estimate of a filter that trusts the model less is another one.
 
     Args:
         apart: names of the parameters of which the intervals were widened.
     """
     if apart:
         values = ", ".join(f"{name} = {getattr(second, name):.4g}" for name in apart)
-        yield f"without its last quarter the recording tells {values}: the intervals are wider and cover both"
+        yield f"a filter that trusts the model less finds {values}: the intervals are wider and cover both"
 
 
 def diagnose_torque_loop(loop: FittedLoop, T_s: float, tau: float) -> Iterator[str]:

@@ -16,7 +16,6 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
-from ..recordings.delays import EARLIEST, LATEST
 from ..recordings.source import RecordingError
 from .noise import white_noise
 
@@ -27,6 +26,9 @@ SETTLED = 53.0
 
 START, SHORTEST, LONGEST = 0.003, 1e-4, 0.05
 """Lag in s with which the search begins, and between which it stays."""
+
+EARLIEST, LATEST = -0.04, 0.1
+"""Delays in s that are looked at: those of a demand that came late into the recording, to that of a slow gateway."""
 
 ANSWERS = 0.9
 """Share of the power of the recorded torque that the demand must explain to be that of motor control."""

@@ -15,11 +15,14 @@ SIGNS = str.maketrans(
 
 WORDS = """
     - -- --- ---- . ? ?? ??? # na n/a n.a. n.a nan -nan +nan nan(ind) -nan(ind) null (null) <null> \\n <na> nat none nil
-    nv n/v k.a. void invalid missing undefined undef unavailable sna nodata no_data ungültig --.- -.- err error fehler
+    nv n/v k.a. void invalid missing <missing> undefined undef n.def. unavailable sna nodata no_data ungültig
+    --.- -.- .. err error fehler bad timeout overflow ovr #ovr #inv
     #n/a #na #nv #value! #wert! #ref! #bezug! #num! #zahl! #name? #null! #div/0!
 """
 
-EMPTY = frozenset(WORDS.split()) | {"", "no data", "not available", "no value", "signal not available"}
+EMPTY = frozenset(WORDS.split()) | {
+    *("", "no data", "not available", "no value", "signal not available", "not a number", "k. a.")
+}
 """What loggers and spreadsheets write where there is no value, in small letters."""
 
 SPELLINGS = sorted({spelling for word in EMPTY for spelling in (word, word.upper(), word.title(), word.capitalize())})
@@ -45,9 +48,19 @@ TRUTHS = {"true": 1.0, "false": 0.0}
 """Of a column that has nothing else."""
 
 
+TEXT = re.compile(r"""=?(["'])(?P<inner>.*)\1|'(?P<marked>[^']*)""", re.DOTALL)
+"""How spreadsheets write what is to stay a text: `="0.5"`, `'0.5'` and `'0.5`."""
+
+
 def cleaned(cell: str) -> str:
-    """Without blanks around it, and with plain signs."""
-    return cell.translate(SIGNS).strip()
+    """Without blanks and quotes around it, and with plain signs."""
+    return unquoted(cell.translate(SIGNS).strip())
+
+
+def unquoted(text: str) -> str:
+    """What stands between the quotes."""
+    found = TEXT.fullmatch(text)
+    return (found["inner"] or found["marked"] or "").strip() if found else text
 
 
 def is_number(cell: str) -> bool:
@@ -92,8 +105,6 @@ def _number(cell: str, decimal: str) -> float | None:
     if is_missing(cell):
         return nan
     text = cleaned(cell)
-    if len(text) > 1 and text[0] == text[-1] == '"':
-        text = text[1:-1].strip()
     if found := GROUPED[decimal].fullmatch(text):
         text = text.replace(found[1], "")
     if decimal == ",":

@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import median
 
 from ...fmus.unit_conversion import known
-from .cells import decimal_of, is_missing, is_number
+from .cells import decimal_of, is_missing, is_number, unquoted
 from .clock_times import is_clock_time
 from .source import RecordingError
 
@@ -68,7 +68,7 @@ def dialect_of(text: str, path: Path) -> Dialect:
     if not rows:
         raise RecordingError(f"{path} is empty")
     above, below = _parted(rows)
-    above = [(line, _uncommented(cells)) for line, cells in above]
+    above = [(line, [unquoted(cell.strip()) for cell in _uncommented(cells)]) for line, cells in above]
     if not above:
         raise RecordingError(f"{path}, line {rows[0][0]}: there is no line of names above the numbers")
     of_units = (k for k in range(len(above) - 1, 0, -1) if _are_units(above[k][1], above[k - 1][1]))

@@ -1,27 +1,33 @@
 """Headings of columns: name and unit, as in `Motor Speed [rpm]`, `Motor Speed (rpm)`, `Motor Speed / rpm`, `Motor Speed
-in rpm` and `motor_speed_rpm`."""
+- rpm`, `Motor Speed in rpm` and `motor_speed_rpm`."""
 
 import re
 from collections.abc import Iterator
 from unicodedata import normalize
 
-IN_BRACKETS = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]?|\((?P<round>.*)\))\s*", re.DOTALL)
+IN_BRACKETS = re.compile(
+    r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]?|\((?P<round>.*)\)|\{(?P<curly>.*)\}|<(?P<angle>.*)>)\s*", re.DOTALL
+)
 
 
 def split(heading: str) -> tuple[str, str | None]:
-    """Name, and unit if one stands behind it in brackets or parentheses."""
+    """Name, and unit if one stands behind it in brackets of any kind."""
     found = IN_BRACKETS.fullmatch(heading)
     if not found:
         return heading.strip(), None
-    unit = found["square"] if found["square"] is not None else found["round"]
+    unit = next(each for each in found.groups()[1:] if each is not None)
     return OPENING.sub("", found["name"]).strip(), unit.strip() or None
 
 
 OPENING = re.compile(r"\s*/\s*$|\s+in\s*$")
 """What may stand between a name and a unit in brackets: `v/(km/h)`, `T in [Nm]`."""
 
-BEHIND = (re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>.+)"), re.compile(r"(?P<name>.+)\s+in\s+(?P<unit>\S.*)"))
-"""A quantity over its unit (ISO 80000-1), and in words."""
+BEHIND = (
+    re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>.+)"),
+    re.compile(r"(?P<name>.+)\s+in\s+(?P<unit>\S.*)"),
+    re.compile(r"(?P<name>.+?)(?:\s+-|:)\s+(?P<unit>\S.*)"),
+)
+"""A quantity over its unit (ISO 80000-1), in words, and behind a mark."""
 
 
 def without_brackets(name: str) -> Iterator[tuple[str, str]]:
@@ -41,8 +47,8 @@ DEVICE = re.compile(r"(.*::)?([^\\]+?)(\s*\\.*)?", re.DOTALL)
 
 
 def key(name: str) -> str:
-    """The same for names that differ in case, spaces, underscores and their device alone, or in how an umlaut is
-    written."""
+    """The same for names that differ in case, spaces, underscores and their device alone (`MotorTorque`), or in how an
+    umlaut is written."""
     found = DEVICE.fullmatch(name)
     bare = found[2] if found else name
-    return normalize("NFC", " ".join(bare.replace("_", " ").split()).casefold())
+    return normalize("NFC", "".join(bare.replace("_", " ").split()).casefold())

@@ -9,7 +9,6 @@ import numpy as np
 from .alignment import aligned, is_slower
 from .bounded_reading import bounded
 from .channels import Channel, Channels
-from .delays import Delay, estimated
 from .file_units import FileUnit
 from .plausibility import of_channels
 from .relations import check_relations
@@ -54,7 +53,6 @@ class Measurement:
         T_load: load torque in N.m, negative when it brakes; None if it was not recorded.
         T_ref: torque demand in N.m, each held until the next; None if it was not recorded.
         columns: heading of the column by quantity.
-        delays: between signals that belong together, as the recording tells them.
         warnings: what is odd but can be used, a sentence each.
         file_units: of T_mot, omega_1, omega_2 and T_load.
     """
@@ -69,7 +67,6 @@ class Measurement:
     T_load: np.ndarray | None
     T_ref: np.ndarray | None
     columns: Mapping[str, str]
-    delays: Sequence[Delay]
     warnings: Sequence[str]
     file_units: Mapping[str, FileUnit]
 
@@ -152,7 +149,6 @@ def read_measurement(
         values.get("T_load"),
         values.get("T_ref"),
         {quantity: heading for quantity, heading in headings.items() if heading},
-        estimated(interval, signals),
         [*_between(breaks, len(parts)), *(f"{path}, {finding}" for finding in of_channels(judged))],
         _written(channels, wheels, loads, i, r),
     )

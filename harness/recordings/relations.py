@@ -10,10 +10,11 @@ show there, whatever the car is.
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+from scipy.signal import butter, sosfiltfilt
 
-from .filters import band, low
 from .source import RecordingError
 from .thresholds import Threshold
 
@@ -61,6 +62,24 @@ SIZE = Threshold(
     3.0, "1", "factor by which it may be larger or smaller", "0.73 to 1.00 in test drives; gear ratios are larger"
 )
 
+ORDER = 4
+
+
+def low(x: np.ndarray, interval: float, frequency: float) -> np.ndarray:
+    """What of a signal, `interval` s apart, is slower than a frequency in Hz (Butterworth, forwards and backwards)."""
+    return sosfiltfilt(butter(ORDER, _below_nyquist(frequency, interval), fs=1.0 / interval, output="sos"), x)
+
+
+def band(x: np.ndarray, interval: float, frequencies: tuple[float, float]) -> np.ndarray:
+    """What of it lies between two frequencies in Hz."""
+    between = [_below_nyquist(frequency, interval) for frequency in frequencies]
+    return sosfiltfilt(butter(ORDER, between, btype="band", fs=1.0 / interval, output="sos"), x)
+
+
+def _below_nyquist(frequency: float, interval: float) -> float:
+    return min(frequency, 0.45 / interval)
+
+
 TURNS = "--column QUANTITY='-HEADING' turns it"
 SAYS = "--column QUANTITY='HEADING [UNIT]' says what a column is"
 
@@ -81,10 +100,9 @@ def check_relations(
     """
     _check_links(path, headings, interval, signals)
     _check_speeds(path, headings, signals)
-    if "T_load" in signals:
-        _check_load(path, headings, interval, signals)
-    if "T_ref" in signals:
-        _check_demand(path, headings, interval, signals)
+    for one in SLOW_TORQUES:
+        if one.name in signals:
+            _check_torque(path, headings, interval, signals, one)
 
 
 def links(interval: float, signals: Mapping[str, np.ndarray]) -> dict[tuple[str, str], float]:
@@ -134,39 +152,48 @@ def _check_speeds(path: Path, headings: Mapping[str, str], signals: Mapping[str,
         )
 
 
-def _check_load(path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]) -> None:
-    correlation, size = _slow_parts(signals["T_load"], signals["T_mot"], interval)
-    if correlation > OPPOSED:
-        raise RecordingError(
-            f"{path}: {headings['T_load']} acts with {headings['T_mot']} (correlation {correlation:.2f} below "
-            f"{SLOW:g} Hz): its sign is wrong; a load that brakes is negative, the torque of wheels that drive "
-            f"positive; {TURNS}"
-        )
-    if correlation < -OPPOSED and not 1.0 / SIZE <= size <= SIZE:
-        raise RecordingError(
-            f"{path}: {headings['T_load']} is {size:.3g} times as large as {headings['T_mot']}, motor side: the unit "
-            f"of one or the gear ratio is not what it is said to be, or it is not on the side that its name says; "
-            f"{SAYS}"
-        )
+class SlowTorque(NamedTuple):
+    """A torque that goes with that of the motor in the long run, or against it.
+
+    Attributes:
+        sign: 1 or -1.
+        contrary: what it does if its sign is wrong, between both headings.
+        so: what that means.
+    """
+
+    name: str
+    sign: float
+    contrary: str
+    so: str
 
 
-def _check_demand(path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]) -> None:
-    correlation, size = _slow_parts(signals["T_ref"], signals["T_mot"], interval)
-    if correlation < -OPPOSED:
-        raise RecordingError(
-            f"{path}: {headings['T_mot']} does the opposite of {headings['T_ref']} (correlation {correlation:.2f} "
-            f"below {SLOW:g} Hz): one of them has the wrong sign; {TURNS}"
-        )
-    if correlation > OPPOSED and not 1.0 / SIZE <= size <= SIZE:
-        raise RecordingError(
-            f"{path}: {headings['T_ref']} is {size:.3g} times as large as {headings['T_mot']}: the unit of one is not "
-            f"what it is said to be, or it is not on the side that its name says; {SAYS}"
-        )
+SLOW_TORQUES = (
+    SlowTorque(
+        "T_load",
+        -1.0,
+        "acts with",
+        "its sign is wrong; a load that brakes is negative, the torque of wheels that drive positive",
+    ),
+    SlowTorque("T_ref", 1.0, "asks for the opposite of", "one of them has the wrong sign"),
+)
 
 
-def _slow_parts(x: np.ndarray, T_mot: np.ndarray, interval: float) -> tuple[float, float]:
-    """Correlation of a torque with that of the motor, and its size over that of the motor, below SLOW."""
-    return compared(low(x, interval, SLOW), low(T_mot, interval, SLOW))
+def _check_torque(
+    path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray], one: SlowTorque
+) -> None:
+    heading, of_motor = headings[one.name], headings["T_mot"]
+    slow = (low(signals[name], interval, SLOW) for name in (one.name, "T_mot"))
+    correlation, size = compared(*slow)
+    if one.sign * correlation < -OPPOSED:
+        raise RecordingError(
+            f"{path}: {heading} {one.contrary} {of_motor} (correlation {correlation:.2f} below {SLOW:g} Hz): {one.so}; "
+            f"{TURNS}"
+        )
+    if one.sign * correlation > OPPOSED and not 1.0 / SIZE <= size <= SIZE:
+        raise RecordingError(
+            f"{path}: {heading} is {size:.3g} times as large as {of_motor}, motor side: the unit of one or the gear "
+            f"ratio is not what it is said to be, or it is not on the side that its name says; {SAYS}"
+        )
 
 
 def compared(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:

@@ -238,7 +238,7 @@ def test_noise_counts_as_white_down_to_its_threshold() -> None:
 def test_a_second_estimate_that_is_another_one_is_named() -> None:
     assert text(diagnose_second([], P)) == ""
     message = text(diagnose_second(["J_2", "C"], P._replace(J_2=0.31234, C=118.0)))
-    assert message.startswith("without its last quarter the recording tells J_2 = 0.3123, C = 118: the intervals")
+    assert message.startswith("a filter that trusts the model less finds J_2 = 0.3123, C = 118: the intervals")
 
 
 def loop(tau: float = 0.003, delay: float = 0.0, explained: float = 1.0) -> FittedLoop:

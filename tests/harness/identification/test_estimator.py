@@ -9,6 +9,7 @@ from driveline.harness.identification import estimator
 from driveline.harness.identification.drive_train import Parameters
 from driveline.harness.identification.estimator import (
     HESITATES,
+    LINEARISED,
     UNTOLD,
     WINDOW,
     Z_95,
@@ -89,7 +90,7 @@ def test_the_deviations_are_those_of_the_likelihood_or_of_the_scatter_of_windows
     n, length = 20_000, round(WINDOW / T_S)
     white = np.random.default_rng(1).standard_normal((n, 2)) * [1.0, 2.0]
     information = np.array([np.diag([n, 0.0]), np.diag([0.0, 4.0 * n])])
-    likelihood = np.array([P.J_2 / np.sqrt(n), P.C / np.sqrt(4.0 * n)])
+    likelihood = LINEARISED * np.array([P.J_2 / np.sqrt(n), P.C / np.sqrt(4.0 * n)])
     np.testing.assert_allclose(list(of(information, white).deviations.values()), likelihood, rtol=0.1)
     together = white.copy()
     together[:, 1] = np.repeat(white[: n // length, 1], length)
@@ -117,7 +118,7 @@ def test_an_interval_covers_a_second_estimate(away: float, widened: bool) -> Non
 @pytest.mark.parametrize(("share", "told"), [(0.99, "load torque"), (1.01, "")])
 def test_what_is_hardly_better_known_than_before_is_not_told(share: float, told: str) -> None:
     """And what is told is told by the channel that tells most of it."""
-    known = 1.0 / (share * UNTOLD * PRIORS["J_2"].deviation) ** 2 - 1.0 / PRIORS["J_2"].deviation ** 2
+    known = (LINEARISED / (share * UNTOLD * PRIORS["J_2"].deviation)) ** 2 - 1.0 / PRIORS["J_2"].deviation ** 2
     one = of(np.array([np.diag([0.3 * known, 9.0]), np.diag([0.7 * known, 4.0])]), np.zeros((500, 2)))
     assert one.told_by("J_2") == told
     assert one.told_by("C") == "motor speed"

@@ -33,7 +33,7 @@ def recording() -> Measurement:
     drive = identified().drive
     time, omega_2 = 100.0 + T_S * np.arange(len(drive) + 1), states(len(drive) + 2 * SPARE, P, 10.0)[2, SPARE:-SPARE]
     given = drive.T_mot, drive.omega_1, omega_2, time < 102.0, None, drive.T_load, None
-    return Measurement("drive", time, *given, {}, (), (), WRITTEN)
+    return Measurement("drive", time, *given, {}, (), WRITTEN)
 
 
 def test_the_figure_is_in_the_units_of_the_file_and_shows_the_window(

@@ -10,6 +10,7 @@ import pytest
 
 from driveline.harness.base.csv_file import write_csv
 from driveline.harness.identification.car_file import identified_car
+from driveline.harness.identification.estimator import Z_95
 from driveline.harness.identification.identify import WITHOUT_LOAD, Identified, nrmse
 from driveline.harness.identification.prior_knowledge import identify
 from driveline.harness.manoeuvres.prbs import binary_torque
@@ -78,9 +79,11 @@ def test_of_the_detailed_vehicle_gap_and_frequency_are_found_and_what_the_model_
     entries = identified_car(vehicle)
     assert entries["C"] == pytest.approx(117.4, rel=0.03)
     assert "J_2" not in entries
-    assert [text.partition(":")[0] for text in vehicle.warnings] == [
-        "two masses and a tyre do not explain all of this car"
+    assert [text.partition(":")[0].partition(" finds ")[0] for text in vehicle.warnings] == [
+        "two masses and a tyre do not explain all of this car",
+        "a filter that trusts the model less",
     ]
+    assert abs(vehicle.p.phi_B - 0.157) < Z_95 * vehicle.found.deviations["phi_B"]
 
 
 @pytest.mark.slow

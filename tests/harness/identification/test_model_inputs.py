@@ -21,7 +21,7 @@ MIDDLE = TIME[:-1, None] + T_S * (np.arange(STEPS) + 0.5) / STEPS
 def recording(time: np.ndarray = TIME, T_ref: np.ndarray | None = None) -> Measurement:
     T_mot, omega = 10.0 + np.sin(20.0 * time), 130.0 + np.cos(9.0 * time)
     T_load = -10.0 + 3.0 * np.sin(5.0 * time)
-    return Measurement("drive", time, T_mot, omega, omega, None, None, T_load, T_ref, {}, (), (), {})
+    return Measurement("drive", time, T_mot, omega, omega, None, None, T_load, T_ref, {}, (), {})
 
 
 @pytest.mark.parametrize("late", [0.0, 0.0007, -0.0031])

@@ -103,6 +103,7 @@ FEW = [*range(30), *range(31, COUNT)]
 MISSING_WORDS = (
     "", " ", "-", "--", "---", "NaN", "nan", "NAN", "-nan", "N/A", "n/a", "#N/A", "#NV", "#DIV/0!", "#VALUE!", "#WERT!",
     "null", "NULL", "(null)", "None", "nil", "1.#QNAN", "-1.#IND", "1.#QNAN00", "?", "???", "*", "****", "####", ".",
+    "overflow", "#OVR", "timeout", "<missing>", "..", "k. A.", "Not a Number",
     "void", "invalid", "missing", "NA", "<NA>", "NaT", "\\N", "no data", "not available", "\N{EN DASH}", "nan(ind)",
     "-nan(ind)", "ungültig", "SNA", "err",
 )  # fmt: skip
@@ -259,6 +260,25 @@ HABITS: dict[str, Habit] = {
     "Latin-1": text(lambda k: f"{plain(k)},20 °C", ",".join((*NAMES, "Öl")), coding="latin-1"),
     "sep=": text(above="sep=,\n"),
     "all quoted": text(lambda k: ",".join(f'"{cell}"' for cell in cells(k)), ",".join(f'"{name}"' for name in NAMES)),
+    "texts of a spreadsheet": text(lambda k: ",".join(f'="{cell}"' for cell in cells(k))),
+    "all quoted once": text(lambda k: ",".join(f"'{cell}'" for cell in cells(k)), ",".join(f"'{n}'" for n in NAMES)),
+    "texts by an apostrophe": text(lambda k: ",".join(f"'{cell}" for cell in cells(k))),
+    "names in one word": text(names="time [s],Velocity [km/h],MotorTorque [Nm]"),
+    "units in other brackets": text(names="Time {s},Velocity <km/h>,Motor Torque {Nm}"),
+    "units behind a dash": text(names="Time - s,Velocity: km/h,Motor Torque - Nm"),
+    "records of INCA": text(
+        lambda k: "\t".join(cells(k)), "time\tVelocity\\ETKC:1\tMotor Torque\\ETKC:1\ns\tkm/h\tNm\nf8\tf8\tf8",
+        above="ETASAsciiItemFile record\nrecorder\ttime\nsampleCount\t61\n",
+    ),
+    "MoTeC": text(
+        lambda k: ",".join(f'"{cell}"' for cell in cells(k)), '"Time","Velocity","Motor Torque"\n"s","km/h","Nm"\n',
+        above='"Format","MoTeC CSV File",,,"Workbook",""\n"Sample Rate","10.000","Hz",,"Duration","6.0","s"\n\n',
+    ),
+    "a clock that is set back": timed(
+        lambda t: f"2026-10-25 02:59:{57 + t:06.3f}+02:00" if t < 3 else f"2026-10-25 02:00:{t - 3:06.3f}+01:00"
+    ),
+    "an index before": text(lambda k: f"{k},{plain(k)}", f",{','.join(NAMES)}"),
+    "the last row first": text(lambda k: plain(COUNT - 1 - k), refused=r"line 3: time 5\.9 s does not come after 6 s"),
     "a mark at each end of line": text(lambda k: plain(k) + ",", ",".join(NAMES) + ","),
     "more cells than names": text(lambda k: plain(k) + ",7,8"),
     "coarse clock": text(lambda k: f"{0.2 * (k // 2):.1f},{V[k]:.2f},{T[k]:.1f}"),

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.filters import band, low
-from driveline.harness.recordings.relations import FAST, LINK, OPPOSED, OTHERS, RATIO, SIZE, SLOW, links
+from driveline.harness.recordings.relations import FAST, LINK, OPPOSED, OTHERS, RATIO, SIZE, SLOW, band, links, low
 from driveline.harness.recordings.source import RecordingError
 from tests.harness.recordings.car import drive
 from tests.harness.recordings.conftest import Read
@@ -48,7 +47,9 @@ def test_a_load_of_the_wrong_sign_is_named(read: Read) -> None:
 
 
 def test_a_demand_of_the_wrong_sign_is_named(read: Read) -> None:
-    with pytest.raises(RecordingError, match=r"T_mot .* does the opposite of T_ref .*one of them has the wrong sign"):
+    with pytest.raises(
+        RecordingError, match=r"T_ref .* asks for the opposite of T_mot .*one of them has the wrong sign"
+    ):
         read(drive() | {"T_ref": -drive()["T_ref"]})
 
 
