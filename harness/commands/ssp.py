@@ -1,6 +1,7 @@
-"""Writes the closed loop as a System Structure Package (SSP 1.0), one file driveline.ssp in which everything is that
-another tool needs to run it: the FMUs, how they are connected and drawn, their parameters with units, and a source FMU
-that drives one manoeuvre. Open it in FMPy, libcosim, ecos or OMSimulator and press Run; see docs/hosts.md.
+"""Writes the closed loop as a System Structure Package (SSP 1.0, or 2.0 with an FMU of FMI 3.0), one file driveline.ssp
+in which everything is that another tool needs to run it: the FMUs, how they are connected and drawn, their parameters
+with units, and a source FMU that drives one manoeuvre. Open it in FMPy, libcosim, ecos or OMSimulator and press Run;
+see docs/hosts.md.
 
 Its variants are the plants: the first one is what a tool opens that knows none (SystemStructure.ssd). The numbers of
 --vehicle, --parameters and --set, the start and the points of the manoeuvre are parameter sets (SSV).

@@ -8,10 +8,10 @@ from ...base.collected_warnings import warn_once
 from ...base.errors import DrivelineError
 from ...cosimulation.wiring import Fit
 from ...manoeuvres.manoeuvre import Manoeuvre
-from . import mastersim
+from . import mastersim, variables
 from .structure import structure
-from .variables import Value, conversion, require_fmi_2, typed, units, values
-from .xml import VERSION, Element, document, element
+from .variables import Value, conversion, typed, units, values
+from .xml import Element, document, element
 
 
 class Variant(NamedTuple):
@@ -37,11 +37,10 @@ def package(variants: Mapping[str, Variant], manoeuvre: Manoeuvre) -> dict[str, 
         variants: by their names, the default first.
 
     Raises:
-        DrivelineError: an FMU is of FMI 3.0; two FMUs have the same file name.
+        DrivelineError: two FMUs have the same file name.
     """
     files: dict[str, bytes] = {}
     for number, (name, variant) in enumerate(variants.items()):
-        require_fmi_2(variant.fitted)
         for path, content in _files(name, variant, manoeuvre, DEFAULT if number == 0 else f"{name}.ssd").items():
             if files.setdefault(path, content) != content:
                 raise DrivelineError(f"two files are to be {path} in the archive; rename one of the FMUs")
@@ -59,12 +58,17 @@ def _files(name: str, variant: Variant, manoeuvre: Manoeuvre, ssd: str) -> dict[
             f"{', '.join(converted)}: converted to another unit by a LinearTransformation, which libcosim and ecos "
             "apply, FMPy and OMSimulator leave out; there is no project of MasterSim"
         )
+    if is_2 := variables.version(fitted) == "2.0":
+        warn_once(
+            "an FMU is of FMI 3.0, so the package is of SSP 2.0, which FMPy, libcosim, ecos and MasterSim do not read; "
+            "there is no project of MasterSim"
+        )
     return {
         ssd: structure(name, description, tool, fitted, sets, manoeuvre.duration),
         **{path: parameter_set(fitted, tool, {"": found[instance]}) for instance, path in sets.items()},
         f"resources/{name}.ssv": parameter_set(fitted, tool, {f"{i}.": every for i, every in found.items()}),
         **{f"resources/{one.path.name}": one.path.read_bytes() for one in fitted.interfaces.values()},
-        **({} if converted else {project: mastersim.project(fitted, found, manoeuvre.duration)}),
+        **({} if converted or is_2 else {project: mastersim.project(fitted, found, manoeuvre.duration)}),
     }
 
 
@@ -84,7 +88,7 @@ def parameter_set(fitted: Fit, tool: str, values: Mapping[str, Sequence[Value]])
     return document(
         element(
             "ssv:ParameterSet",
-            {"version": VERSION, "name": NAME, "generationTool": tool},
+            {"version": variables.version(fitted), "name": NAME, "generationTool": tool},
             [element("ssv:Parameters", children=rows), *units("ssv", fitted, names)],
         )
     )
@@ -92,5 +96,5 @@ def parameter_set(fitted: Fit, tool: str, values: Mapping[str, Sequence[Value]])
 
 def _parameter(prefix: str, value: Value) -> Element:
     described = {"description": value.description} if value.description else {}
-    content = typed("ssv", value.type, value.unit, value.value)
+    content = typed("ssv", value.type, value.fmi, value.unit, value.value)
     return element("ssv:Parameter", {"name": f"{prefix}{value.name}", **described}, [content])

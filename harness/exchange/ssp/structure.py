@@ -17,8 +17,8 @@ from ...cosimulation.system import Connection
 from ...cosimulation.wiring import Fit
 from ...loop.places import STEP_SIZE
 from . import layout
-from .variables import as_it_is, conversion, outputs, their_name, typed, units
-from .xml import VERSION, Element, document, element
+from .variables import as_it_is, conversion, outputs, their_name, typed, units, version
+from .xml import Element, document, element
 
 OSP, OMS = "com.opensimulationplatform", "org.openmodelica"
 """Owners of the annotations that libcosim and OMSimulator read."""
@@ -46,7 +46,7 @@ def structure(name: str, description: str, tool: str, fitted: Fit, sets: Mapping
     return document(
         element(
             "ssd:SystemStructureDescription",
-            {"version": VERSION, "name": name, "description": description, "generationTool": tool},
+            {"version": version(fitted), "name": name, "description": description, "generationTool": tool},
             [system, *units("ssd", fitted, map(unit_of, shown.values())), _experiment(stop_time)],
         )
     )
@@ -61,7 +61,7 @@ def _connectors(fitted: Fit) -> dict[str, ModelVariable]:
 def _component(fitted: Fit, instance: str, shown: Mapping[str, ModelVariable], sets: Mapping[str, str]) -> Element:
     interface = fitted.interfaces[instance]
     connectors = [
-        _connector(their_name(fitted.system, name), name, variable)
+        _connector(their_name(fitted.system, name), name, variable, interface.fmi)
         for name, variable in shown.items()
         if name.partition(".")[0] == instance
     ]
@@ -83,11 +83,11 @@ def _component(fitted: Fit, instance: str, shown: Mapping[str, ModelVariable], s
     )
 
 
-def _connector(theirs: str, name: str, variable: ModelVariable) -> Element:
+def _connector(theirs: str, name: str, variable: ModelVariable, fmi: int) -> Element:
     made = element(
         "ssd:Connector",
         {"name": theirs, "kind": variable.causality, "description": variable.description or name},
-        [typed("ssc", str(variable.type), unit_of(variable))],
+        [typed("ssc", str(variable.type), fmi, unit_of(variable))],
     )
     if name in layout.PLACES:
         made.append(element("ssd:ConnectorGeometry", layout.PLACES[name]._asdict()))

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 from fmpy.model_description import BaseUnit, ModelVariable
 
-from ...base.errors import DrivelineError
 from ...cosimulation.interface import type_of, unit_of
 from ...cosimulation.system import Connection, System
 from ...cosimulation.wiring import Fit
@@ -20,6 +19,7 @@ class Value(NamedTuple):
     Attributes:
         name: in its FMU.
         type: "Real", "Integer" or "Boolean".
+        fmi: of its FMU.
         unit: None for none.
     """
 
@@ -28,6 +28,7 @@ class Value(NamedTuple):
     value: float | int | bool
     unit: str | None
     description: str | None
+    fmi: int
 
 
 def values(fitted: Fit, given: Mapping[str, float]) -> dict[str, list[Value]]:
@@ -43,7 +44,9 @@ def values(fitted: Fit, given: Mapping[str, float]) -> dict[str, list[Value]]:
             if value is not None:
                 as_typed = {"Real": float, "Integer": int, "Boolean": bool}[kind](value)
                 own = as_it_is(fitted, name)
-                found[instance].append(Value(str(own.name), kind, as_typed, unit_of(own), own.description))
+                found[instance].append(
+                    Value(str(own.name), kind, as_typed, unit_of(own), own.description, interface.fmi)
+                )
     return found
 
 
@@ -69,22 +72,20 @@ def _factor(fitted: Fit, name: str) -> float:
     return fitted.interfaces[instance].factors.get(variable, 1.0)
 
 
-def require_fmi_2(fitted: Fit) -> None:
-    """
-    Raises:
-        DrivelineError: an FMU is of FMI 3.0, which SSP knows from version 2.0 on.
-    """
-    for instance, interface in fitted.interfaces.items():
-        if interface.fmi != 2:
-            raise DrivelineError(
-                f"{instance}: {interface.path.name} is of FMI {interface.fmi}.0; allowed in SSP 1.0 is FMI 2.0"
-            )
+def version(fitted: Fit) -> str:
+    """Of the standard, the first that knows all the FMUs: most tools refuse 2.0."""
+    return "2.0" if any(interface.fmi == 3 for interface in fitted.interfaces.values()) else "1.0"
 
 
-def typed(prefix: str, kind: str, unit: str | None, value: object = None) -> Element:
+OF_FMI3 = {"Real": "Float64", "Integer": "Int32"}
+"""What SSP 2.0 calls the types of FMUs of FMI 3.0."""
+
+
+def typed(prefix: str, kind: str, fmi: int, unit: str | None, value: object = None) -> Element:
     """The element of a type, such as `ssc:Real`, with its unit and with a value if there is one."""
     attributes = {} if value is None else {"value": value}
-    return element(f"{prefix}:{kind}", attributes | ({"unit": unit} if kind == "Real" and unit else {}))
+    name = OF_FMI3.get(kind, kind) if fmi == 3 else kind
+    return element(f"{prefix}:{name}", attributes | ({"unit": unit} if kind == "Real" and unit else {}))
 
 
 def units(prefix: str, fitted: Fit, names: Iterable[str | None]) -> list[Element]:

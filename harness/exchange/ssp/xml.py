@@ -16,9 +16,6 @@ for prefix, uri in NAMESPACES.items():
 
 Element = ElementTree.Element
 
-VERSION = "1.0"
-"""Of the standard; later ones some tools refuse."""
-
 
 def element(name: str, attributes: Mapping[str, object] | None = None, children: Iterable[Element] = ()) -> Element:
     """An element such as `ssd:System`; numbers are written so that they are read back the same."""

@@ -213,9 +213,29 @@ def test_other_units_are_converted_on_the_connections_and_in_the_parameters(fmus
         assert not [name for name in archive.namelist() if name.endswith(".msim")]
 
 
-def test_fmi_3_is_refused_and_a_change_in_a_run_before_fmus_are_looked_for(fmus, fmi3, tmp_path, capsys) -> None:
-    message = refused(fmus, tmp_path / "out", capsys, "--plant", str(fmi3 / "TwoMassDriveline.fmu"))
-    assert message.endswith("plant: TwoMassDriveline.fmu is of FMI 3.0; allowed in SSP 1.0 is FMI 2.0\n")
+def test_an_fmu_of_fmi_3_makes_it_a_package_of_ssp_2_with_the_types_of_that(packaged, fmi3, caplog) -> None:
+    """Beyond version and types it is valid by the schema of SSP 1.0."""
+    ssp = packaged("--plant", str(fmi3 / "TwoMassDriveline.fmu"))
+    (said,) = [each.getMessage() for each in caplog.records]
+    assert said.startswith("an FMU is of FMI 3.0, so the package is of SSP 2.0")
+    folder = Path(fmpy.ssp.__file__).parent / "schema"
+    with zipfile.ZipFile(ssp) as archive:
+        assert not [name for name in archive.namelist() if name.endswith(".msim")]
+        for name in (name for name in archive.namelist() if Path(name).suffix in SCHEMAS):
+            text = archive.read(name)
+            assert etree.fromstring(text).get("version") == "2.0"
+            old = (
+                text.replace(b'version="2.0"', b'version="1.0"')
+                .replace(b":Float64", b":Real")
+                .replace(b":Int32", b":Integer")
+            )
+            etree.XMLSchema(file=folder / SCHEMAS[Path(name).suffix]).assertValid(etree.fromstring(old))
+    kinds = {component.get("name"): {c[0].tag.rpartition("}")[2] for c in component.iterfind("*/ssd:Connector", NS)}
+             for component in parsed(ssp, SSDS[0]).iterfind(".//ssd:Component", NS)}  # fmt: skip
+    assert (kinds["plant"], kinds["motor"]) == ({"Float64"}, {"Real"})
+
+
+def test_a_change_in_a_run_is_refused_before_fmus_are_looked_for(tmp_path, capsys) -> None:
     assert main(["ssp", "--fmus", str(tmp_path), "--set", "controller.k_d@2=1"]) == 2
     message = "driveline ssp: controller.k_d@2: the parameters of an SSP have one value from the start on\n"
     assert capsys.readouterr().err == message
