@@ -61,8 +61,8 @@ def sources(interface: Interface) -> Iterator[str]:
         listed = [file.get("name", "") for file in root.iterfind(".//SourceFile")]
     else:
         listed = []
-        if any(name.startswith("sources/") for name in names):
-            yield f"it has sources, but no {built}"
+        if not any(name.startswith("binaries/") for name in names):
+            yield f"it has no binaries, and no {built}"
     for name in dict.fromkeys(listed):
         if f"sources/{name}" not in names:
             yield f"sources/{name} is named, and is not there"
