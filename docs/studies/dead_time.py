@@ -22,7 +22,9 @@ PLANT = "TwoMassDriveline"
 
 OPEN = NOISELESS | {
     "controller.k_d": 0.0,
-    "controller.k_T": 0.0,
+    "controller.shape_1": 0.0,
+    "controller.shape_2": 0.0,
+    "controller.L_phi_B": 0.0,
     "controller.t_land": 0.0,
     **{f"controller.{name}": 1000.0 for name in ("jump", "wheel_deviation", "wheel_jump", "frozen")},
     "controller.slip_drift": 100.0,

@@ -95,6 +95,7 @@ class Study(NamedTuple):
 STUDIES = (
     "results",
     "goals",
+    "learned_gap",
     "one_at_a_time",
     "tutorial",
     "comparison",

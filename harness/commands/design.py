@@ -5,11 +5,12 @@ can set limits: with its T_take_max and T_add_max the control never takes or add
 With --search the parameters of the law are searched instead, for this or another controller, by a cost over all
 manoeuvres (docs/calibration.md). The folder gets all candidates, what made them, the gains of the one that is chosen,
 and the front between comfort and response. A search that was stopped goes on there with the same command, and another
---character chooses from the same candidates.
+--character chooses from the same candidates. Without a search, --character makes the computed gains softer or harder.
 
 examples:
   driveline design                                          the gains for the default car, only printed
   driveline design --vehicle examples/cars/van.toml --output van_gains.toml
+  driveline design --character 0.8                          softer
   driveline design --search results/design                  searched, in some minutes
   driveline design --search results/design --character 0.8  softer, from the same candidates
 """
@@ -47,7 +48,8 @@ def run(args: Arguments) -> int:
             raise DrivelineError("--parameters has limits for computed gains: leave it out, or --search")
         return run_search(args, args.search)
     require_search(args)
-    text, lacks = designed(args.vehicle, limits=args.parameters), lacking_line(args.vehicle)
+    text = designed(args.vehicle, limits=args.parameters, character=args.character)
+    lacks = lacking_line(args.vehicle)
     if args.output is None and not args.silent:
         print(text.rstrip())
     elif args.output is not None:
@@ -58,12 +60,18 @@ def run(args: Arguments) -> int:
     return 0
 
 
-def designed(vehicle: Path | None = None, weights: "Weights | None" = None, limits: Path | None = None) -> str:
+def designed(
+    vehicle: Path | None = None,
+    weights: "Weights | None" = None,
+    limits: Path | None = None,
+    character: float | None = None,
+) -> str:
     """The file of gains for the car of a vehicle file, by default for the default car.
 
     Args:
         weights: of the design (default: those of the default gains).
         limits: file with the most that the control may take and add.
+        character: from 0, sport, to 1, comfort.
 
     Raises:
         ParameterFileError: a file is refused, or the limits have something else.
@@ -84,7 +92,7 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None, limi
         raise ParameterFileError(f"{limits}: {nothing[0]} = 0: a limit must be above 0 N.m")
     plant, motor, can = records(entries)
     try:
-        gains = gains_of(plant, motor, can, weights or WEIGHTS, most)
+        gains = gains_of(plant, motor, can, weights or WEIGHTS, most, 0.5 if character is None else character)
     except DesignError as refusal:
         raise DesignError(f"{refusal}{cause(plant, motor, can, weights or WEIGHTS)}") from refusal
     # the limits of a user may be too small for any linear loop
@@ -100,5 +108,7 @@ def designed(vehicle: Path | None = None, weights: "Weights | None" = None, limi
     car = vehicle.name if vehicle else "the default car"
     if weights and weights.washout != WEIGHTS.washout:
         car += f", with the washout at {weights.washout / WEIGHTS.washout:.2f} of its frequency"
+    if character is not None:
+        car += f", character {character:g} (0 sport, 1 comfort)"
     comment = COMMENT.format(train, train.damped, car=car, version=version("driveline-damping"), meant=MEANT)
     return gains_file(gains, comment)

@@ -69,7 +69,7 @@ def require_search(args: Search) -> None:
         DrivelineError: names the first.
     """
     for name in (*DEFAULTS, "scheduler", "build"):
-        if getattr(args, name) is not None:
+        if name != "character" and getattr(args, name) is not None:
             raise DrivelineError(f"--{name} is for a search: give the folder of one, --search FOLDER")
 
 

@@ -11,6 +11,8 @@ from typing import Any
 
 from ...fmus.building.parameter_files import of_vehicle
 from ...fmus.description.variables import Variable
+from ...models.controller import T_S
+from .character import factors
 from .design_weights import (
     CAN,
     MOTOR,
@@ -32,7 +34,10 @@ AUTHORITY = ("T_take_max", "T_add_max")
 
 
 def design(
-    vehicle: Mapping[str, Any] | None = None, weights: Weights = WEIGHTS, limits: Mapping[str, float] | None = None
+    vehicle: Mapping[str, Any] | None = None,
+    weights: Weights = WEIGHTS,
+    limits: Mapping[str, float] | None = None,
+    character: float = 0.5,
 ) -> dict[str, float]:
     """All parameters of the controller that are designed for a car, by name, in SI units.
 
@@ -44,12 +49,13 @@ def design(
             from them or is that of the default car.
         weights: what the designer decides.
         limits: the most that T_take_max and T_add_max may be, in N.m, by these names.
+        character: from 0, sport, to 1, comfort.
 
     Raises:
         ParameterFileError: one is not known, no number or out of range; they disagree, or there is no such car.
         DesignError: the car leaves something undetermined, or needs what the controller cannot be set to.
     """
-    return gains_of(*records(of_vehicle(vehicle)), weights, limits)
+    return gains_of(*records(of_vehicle(vehicle)), weights, limits, character)
 
 
 def gains_of(
@@ -58,11 +64,13 @@ def gains_of(
     can: Can = CAN,
     weights: Weights = WEIGHTS,
     limits: Mapping[str, float] | None = None,
+    character: float = 0.5,
 ) -> dict[str, float]:
     """The same for the records of a car.
 
     Args:
         plant, motor, can: the car.
+        character: see `design`.
 
     Raises:
         DesignError: the car leaves something undetermined, or needs what the controller cannot be set to.
@@ -71,10 +79,12 @@ def gains_of(
     of_messages = possible({"T_age": train.T_age})
     gains = estimator_gains(plant, motor, can, train, weights)
     law = damping_law(plant, motor, train, weights)
+    law |= {name: factor * law[name] for name, factor in factors(character).items()}
+    learned = {"L_phi_B": weights.learning * plant.J_1 / (plant.C * T_S)}
     allowed = {
         name: min(asked, (limits or {}).get(name, inf)) for name, asked in authority(plant, motor, weights).items()
     }
-    return possible({"lambda_v": train.lambda_v, **gains, **of_messages, **law, **allowed})
+    return possible({"lambda_v": train.lambda_v, **gains, **of_messages, **learned, **law, **allowed})
 
 
 def literal_observer(
@@ -104,21 +114,25 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
     """The parameters of the damping law.
 
     In contact k_d damps the drive train with the ratio k_d/(2 J_1 omega_0). Above the resonance, where J_1 alone
-    is left, the loop crosses over at k_d/J_1, and there the dead time takes the phase T_dead k_d/J_1. After a step
-    of the torque the washout of k_T takes its impulse away for k_T/omega_w. What the estimate is taken ahead makes up
-    for the part omega_0 T_dead of the dead time: the slower the motor is for its drive train, the more it has to.
+    is left, the loop crosses over at k_d/J_1, and there the dead time takes the phase T_dead k_d/J_1. What the estimate
+    is taken ahead makes up for the part omega_0 T_dead of the dead time: the slower the motor is for its drive train,
+    the more it has to. A landing is a motion of the motor alone, which the whole dead time delays.
     """
     k_d = plant.J_1 * max(2.0 * weights.damping_ratio * train.omega_0, weights.phase / train.T_dead)
-    omega_w = weights.washout * train.omega_0
+    furthest, furthest_landing = (PARAMETERS[name].bounds()[1] for name in ("T_pred", "T_pred_land"))
     return {
-        "T_pred": min(weights.look_ahead * train.omega_0 * train.T_dead**2, PARAMETERS["T_pred"].bounds()[1]),
+        "T_pred": min(weights.look_ahead * train.omega_0 * train.T_dead**2, furthest),
         "k_d": k_d,
-        "k_T": omega_w * weights.withheld / train.omega_v,
-        "omega_w": omega_w,
+        "omega_w": weights.washout * train.omega_0,
+        "shape_1": weights.shape_1,
+        "shape_2": weights.shape_2,
+        "omega_shape": min(weights.shape * train.omega_0, PARAMETERS["omega_shape"].bounds()[1]),
         "k_gap": weights.k_gap,
+        "T_pred_land": min(weights.landing_ahead * train.T_dead, furthest_landing),
         "T_gap": largest_landing(plant, motor, weights),
-        "landing_share": weights.landing_share,
         "landing_brake": weights.landing_brake,
+        "landing_share": weights.landing_share,
+        "T_impact": weights.largest * motor.T_max,
         "demand_lead": weights.demand_lead,
         "omega_slow": weights.recent * train.omega_v,
         "t_return": max(weights.comeback / train.omega_0, PARAMETERS["t_return"].bounds()[0]),
@@ -127,14 +141,13 @@ def damping_law(plant: Plant, motor: Motor, train: DriveTrain, weights: Weights)
 
 
 def largest_landing(plant: Plant, motor: Motor, weights: Weights) -> float:
-    """T_gap in N.m: a share of T_max, or less where the flight from flank to flank would begin too fast.
+    """T_gap in N.m: a share of T_max, or less where the flight from flank to flank would become too fast.
 
-    The motor may begin it with omega_land at d = 2 phi_B. Turned into twist by the spring, that is the torque T_peak
-    of (landing_share T)^2 + 4 landing_brake C phi_B T = T_peak^2.
+    Braked by T_gap over 2 phi_B, the motor may have the speed that the spring turns into the torque T_peak of
+    4 T_gap C phi_B = T_peak^2.
     """
-    T_peak, flight = weights.impact * motor.T_max, 2.0 * weights.landing_brake * plant.C * plant.phi_B
-    bearable = T_peak**2 / (flight + sqrt(flight**2 + (weights.landing_share * T_peak) ** 2))
-    return min(weights.landing * motor.T_max, bearable)
+    T_peak = weights.impact * motor.T_max
+    return min(weights.landing * motor.T_max, T_peak**2 / (4.0 * plant.C * plant.phi_B))
 
 
 def authority(plant: Plant, motor: Motor, weights: Weights) -> dict[str, float]:

@@ -53,12 +53,15 @@ class Weights:
         phase: that the dead time may take where the loop crosses over, rad; a drive train that is damped well with
             less is damped more.
         look_ahead: time that the estimate is taken ahead, over omega_0 T_dead^2.
-        k_gap: factor on the damping inside the gap.
         washout: its corner frequency, over omega_0.
-        withheld: time by which the feedback of the gear torque delays the driver's impulse, times omega_v.
-        landing: largest torque that the speed of a landing is derived from, over T_max.
+        shape_1, shape_2, k_gap, landing_brake, landing_share, demand_lead: see the damping law.
+        shape: corner frequency of the lags that shape the demand, over omega_0.
+        landing_ahead: time that the estimate is taken ahead for a landing, over T_dead.
+        landing: torque that brakes before an impact, over T_max.
+        largest: demand from which on impacts are no harder, over T_max.
         impact: gear torque that the largest speed of a landing could make, over T_max.
-        landing_share, landing_brake, demand_lead: see the damping law.
+        learning: change of the half gap by a crossing, over that of the twist which makes J_1 as much faster in a
+            sample as the innovations of the crossing are.
         recent: corner frequency that tells which change of the demand is recent, over omega_v.
         comeback: time constant with which the torque that a landing withheld comes back, times omega_0.
         longest_landing: how long a landing may last, times omega_v.
@@ -74,19 +77,24 @@ class Weights:
     slip_load_error: float = 0.6 / 180.0
     twist_error: float = 6.52222e-4
     message_error: float = 0.4698217
-    damping_ratio: float = 0.4978043
+    damping_ratio: float = 0.5036608
     phase: float = 0.31
-    look_ahead: float = 0.4093712
-    k_gap: float = 0.6
+    look_ahead: float = 1.023428
+    k_gap: float = 0.97
     washout: float = 0.06442173
-    withheld: float = 0.008063731
-    landing: float = 0.6111111
-    impact: float = 0.5
-    landing_share: float = 0.4
-    landing_brake: float = 0.5
+    shape_1: float = 0.57
+    shape_2: float = -0.46
+    shape: float = 1.803808
+    landing_ahead: float = 1.104569
+    landing: float = 0.3166667
+    largest: float = 0.6666667
+    impact: float = 0.45
+    learning: float = 0.006232873
+    landing_share: float = 0.5
+    landing_brake: float = 0.93
     demand_lead: float = 1.1
-    recent: float = 1.612157
-    comeback: float = 0.1629885
+    recent: float = 1.43854
+    comeback: float = 0.2188702
     longest_landing: float = 0.8063731
     take: float = 0.5555556
     add: float = 0.3333333

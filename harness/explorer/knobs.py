@@ -5,12 +5,13 @@ from typing import NamedTuple
 
 from ..cosimulation.interface import unit_of
 from ..cosimulation.wiring import Fit
+from ..design.character import factors
 
 CAR = ("phi_B", "C", "m", "J_1", "J_2", "c_slip", "tau", "d_max")
 """Of the car: each is one for all blocks that have it, and others follow from it as from a vehicle file. d_max is the
 longest delay of the wheel speed on the bus."""
 
-GAINS = ("k_d", "k_T", "omega_w", "k_gap", "T_gap", "landing_brake", "demand_lead", "t_return")
+GAINS = ("k_d", "omega_w", "shape_1", "shape_2", "k_gap", "T_gap", "landing_share", "demand_lead", "t_return")
 """Of the controller."""
 
 ROAD = ("mu",)
@@ -23,8 +24,7 @@ values can be typed."""
 NEAR = {"C": 2.0, "c_slip": 2.0}
 """The same where half shafts would follow that are stiffer than any."""
 
-SPORT: Mapping[str, float] = {"k_d": 0.88, "omega_w": 1.4, "T_gap": 1.7, "t_return": 0.5}
-COMFORT: Mapping[str, float] = {"k_d": 1.2, "omega_w": 0.75, "T_gap": 0.6, "t_return": 2.0}
+SPORT, COMFORT = (factors(end) for end in (0.0, 1.0))
 """Factors on gains at both ends of the character; docs/explorer.md says what they do."""
 
 

@@ -10,12 +10,12 @@ T_damp = -s/(s + omega_w) [k_d (omega_1 - omega_2) + k_T T_gear]
 from ..controller import torque_estimator
 from ..controller.supervised_controller import supervised
 from . import state_feedback
-from .fixed import fixed
+from .fixed import NOT_LEARNED, fixed
 
 BLOCK = supervised(
     name="LinearObserver",
     description="Comparator: damping by state feedback behind a linear observer without backlash",
     module=__name__,
-    estimator=fixed(torque_estimator, phi_B=0.0),
-    law=state_feedback.LAW,
+    estimator=fixed(torque_estimator, phi_B=0.0, **NOT_LEARNED),
+    law=state_feedback,
 )

@@ -50,6 +50,10 @@ def take_wheel_speed(x: SpeedState, omega_2: float, T_s: float, p: Parameters) -
     return x._replace(omega_2=omega_2)
 
 
+def learn(x: SpeedState, innovation: float, doubted: bool, T_s: float, p: Parameters) -> SpeedState:
+    return x
+
+
 def predict(x: SpeedState, T_mot: float, wheel: bool, T_s: float, p: AllParameters) -> SpeedState:
     share = faded(x.share, wheel, T_s, p.t_fade)
     omega_1 = clip(x.omega_1 + T_s * T_mot / p.J, -p.omega_max, p.omega_max)

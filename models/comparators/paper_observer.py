@@ -9,10 +9,10 @@
 The vehicle takes no share of the gear torque, nor is there a load.
 """
 
-from ..controller import damping_law, torque_estimator
+from ..controller import torque_estimator
 from ..controller.supervised_controller import supervised
-from .fixed import fixed
-from .state_feedback import NO_LANDING
+from . import state_feedback
+from .fixed import NOT_LEARNED, fixed
 
 GAINS = {
     "L_omega_1": 0.299725,
@@ -33,6 +33,6 @@ BLOCK = supervised(
     name="PaperObserver",
     description="Comparator: damping by the derivative of the gear torque that the paper's observer estimates",
     module=__name__,
-    estimator=fixed(torque_estimator, GAINS, lambda_v=0.0, L_T_l=0.0, L_can_T_l=0.0, **NO_SLIP),
-    law=fixed(damping_law, {"k_T": 4.45, "omega_w": 299.0}, k_d=0.0, k_gap=1.0, T_pred=0.0, **NO_LANDING),
+    estimator=fixed(torque_estimator, GAINS, lambda_v=0.0, L_T_l=0.0, L_can_T_l=0.0, **NO_SLIP, **NOT_LEARNED),
+    law=fixed(state_feedback, {"k_T": 4.45, "omega_w": 299.0}, k_d=0.0, T_pred=0.0),
 )

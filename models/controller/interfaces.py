@@ -21,6 +21,8 @@ class Motion(NamedTuple):
     omega_2: Annotated[float, Real("rad/s", "speed of the wheels, motor side")]
     phi: Annotated[float, Real("rad", "twist, motor side")]
     T_gear: Annotated[float, Real("N.m", "gear torque, motor side")]
+    phi_B: Annotated[float, Real("rad", "half of the gap")] = 0.0
+    slip: Annotated[float, Real("1", "how clearly the wheels slip, from 0 to 1")] = 0.0
 
 
 class Addition(NamedTuple):
@@ -53,6 +55,15 @@ class Estimator(Part, Protocol[S, P]):
 
     def take_wheel_speed(self, x: S, omega_2: float, T_s: float, p: P) -> S:
         """State corrected by a message that has just arrived."""
+        ...
+
+    def learn(self, x: S, innovation: float, doubted: bool, T_s: float, p: P) -> S:
+        """State that has learned of the car what the signals of this sample tell.
+
+        Args:
+            innovation: measured less expected motor speed, rad/s.
+            doubted: whether they are.
+        """
         ...
 
     def predict(self, x: S, T_mot: float, wheel: bool, T_s: float, p: P) -> S:

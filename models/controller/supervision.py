@@ -65,6 +65,7 @@ class Output(NamedTuple):
         ),
     ]
     cause: Annotated[int, causes.OUTPUT]
+    phi_B_hat: Annotated[float, Real("rad", "half gap as it was learned; phi_B_0 takes it at the next start")]
 
 
 def demand(u: Input, p: Parameters) -> float:

@@ -15,6 +15,9 @@ Wheels that spin or lock leave the vehicle behind, and the road that catches the
 neither, and shows it: its innovations drift, or the slow load becomes larger than any vehicle's. `slip` then fades to
 a set of gains for a load that may change fast, at once, and back within t_grip.
 
+The gap is the one that was learned (learned_gap). What is learned at the end of a crossing moves the estimated twist
+with the flank, so that the gear torque stays.
+
 The model looks the same from a train that rolls along: only differences of speeds are in it. So the speeds of the
 estimate are counted from the motor speed that was measured last. They are small numbers then, and single precision
 rounds them as little as the twist, which is the integral of their difference.
@@ -23,20 +26,22 @@ rounds them as little as the twist, which is the integral of their difference.
 from collections.abc import Sequence
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
+from ..block.declaration import Real, merged
 from ..block.operators import branch, clip, maximum, where
 from ..physics.backlash import dead_zone
 from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia, added_speed
+from . import learned_gap
 from .fading import faded
 from .gains import GAINS
 from .interfaces import Motion
+from .learned_gap import GapState
 
 LARGEST_TORQUE = 4.0
 """Gear torque over T_max beyond which an estimate is none: a step of the demand from -T_max to T_max swings to 3 on a
 spring without damping, and an impact through the gap adds less than 1."""
 
 
-class Parameters(NamedTuple):
+class ModelParameters(NamedTuple):
     J_1: MotorInertia = CAR.J_1
     J_2: WheelInertia = CAR.J_2
     C: Stiffness = CAR.C
@@ -83,11 +88,19 @@ class Parameters(NamedTuple):
     t_grip: Annotated[float, Real("s", "time after which slip is forgotten", 0.002, 10.0, tunable=True)] = 1.0
 
 
-class AllParameters(Parameters):
+Parameters = merged("Parameters", ModelParameters, learned_gap.Parameters)
+
+
+class AllParameters(ModelParameters):
     """With those of the supervision that it takes beside its own: a type of p, never made."""
 
     T_max: float
     t_fade: float
+    phi_B_0: float
+    L_phi_B: float
+    gap_bias: float
+    gap_torque: float
+    t_cross: float
 
 
 class Estimate(NamedTuple):
@@ -108,14 +121,19 @@ class EstimatorState(NamedTuple):
     share: Annotated[float, Real("1", "share of the gains of a message")]
     drift: Annotated[float, Real("rad/s", "mean of the recent innovations")]
     slip: Annotated[float, Real("1", "share of the gains for wheels that slip")]
+    gap: GapState
 
 
-def start(omega_1: float, T_mot: float, wheel: bool, p: Parameters) -> EstimatorState:
-    return EstimatorState(omega_1, at_rest_with(T_mot, p), omega_1, where(wheel, 1.0, 0.0), drift=0.0, slip=0.0)
+def start(omega_1: float, T_mot: float, wheel: bool, p: AllParameters) -> EstimatorState:
+    gap = learned_gap.start(p)
+    estimate = at_rest_with(T_mot, gap.phi_B, p)
+    return EstimatorState(omega_1, estimate, omega_1, where(wheel, 1.0, 0.0), drift=0.0, slip=0.0, gap=gap)
 
 
-def restart(x: EstimatorState, omega_1: float, T_mot: float, p: Parameters) -> EstimatorState:
-    return x._replace(base=omega_1, estimate=at_rest_with(T_mot, p), late=omega_1, drift=0.0, slip=0.0)
+def restart(x: EstimatorState, omega_1: float, T_mot: float, p: AllParameters) -> EstimatorState:
+    estimate = at_rest_with(T_mot, x.gap.phi_B, p)
+    gap = learned_gap.forget_crossing(x.gap)
+    return x._replace(base=omega_1, estimate=estimate, late=omega_1, drift=0.0, slip=0.0, gap=gap)
 
 
 def take_motor_speed(x: EstimatorState, omega_1: float, slips: bool, T_s: float, p: AllParameters) -> EstimatorState:
@@ -125,7 +143,7 @@ def take_motor_speed(x: EstimatorState, omega_1: float, slips: bool, T_s: float,
     L, Ls = (p.L_omega_1, p.L_omega_2, p.L_phi, p.L_T_l), (p.Ls_omega_1, p.Ls_omega_2, p.Ls_phi, p.Ls_T_l)
     e = corrected(e, -e.omega_1, [a + slip * (b - a) for a, b in zip(L, Ls, strict=True)])
     x = x._replace(base=omega_1, estimate=e, drift=drift, slip=slip)
-    plausible = p.C * (abs(e.phi) - p.phi_B) <= LARGEST_TORQUE * p.T_max
+    plausible = p.C * (abs(e.phi) - x.gap.phi_B) <= LARGEST_TORQUE * p.T_max
     return branch(plausible, lambda: x, lambda: restart(x, omega_1, 0.0, p))
 
 
@@ -136,22 +154,28 @@ def slipping(drift: float, T_l: float, T_s: float, p: AllParameters) -> float:
     return clip(maximum(by_drift, by_load) - 1.0, 0.0, 1.0)
 
 
-def take_wheel_speed(x: EstimatorState, omega_2: float, T_s: float, p: Parameters) -> EstimatorState:
+def take_wheel_speed(x: EstimatorState, omega_2: float, T_s: float, p: ModelParameters) -> EstimatorState:
     L = (p.L_can_omega_1, p.L_can_omega_2, p.L_can_phi, p.L_can_T_l)
     return x._replace(estimate=corrected(x.estimate, x.share * (omega_2 - x.late), L))
 
 
+def learn(x: EstimatorState, innovation: float, doubted: bool, T_s: float, p: AllParameters) -> EstimatorState:
+    e = x.estimate
+    gap, moved = learned_gap.update(x.gap, innovation, e.phi, x.slip, doubted, T_s, p)
+    return x._replace(estimate=e._replace(phi=e.phi + moved), gap=gap)
+
+
 def predict(x: EstimatorState, T_mot: float, wheel: bool, T_s: float, p: AllParameters) -> EstimatorState:
     return x._replace(
-        estimate=integrated(x.estimate, T_mot, T_s, p),
+        estimate=integrated(x.estimate, T_mot, x.gap.phi_B, T_s, p),
         late=x.late + T_s / p.T_age * (x.base + x.estimate.omega_2 - x.late),
         share=faded(x.share, wheel, T_s, p.t_fade),
     )
 
 
-def motion(x: EstimatorState, p: Parameters) -> Motion:
-    e = x.estimate
-    return Motion(x.base + e.omega_1, x.base + e.omega_2, e.phi, p.C * dead_zone(e.phi, p.phi_B))
+def motion(x: EstimatorState, p: ModelParameters) -> Motion:
+    e, phi_B = x.estimate, x.gap.phi_B
+    return Motion(x.base + e.omega_1, x.base + e.omega_2, e.phi, p.C * dead_zone(e.phi, phi_B), phi_B, x.slip)
 
 
 def counted_from(omega: float, e: Estimate) -> Estimate:
@@ -159,16 +183,16 @@ def counted_from(omega: float, e: Estimate) -> Estimate:
     return e._replace(omega_1=e.omega_1 - omega, omega_2=e.omega_2 - omega)
 
 
-def at_rest_with(T_mot: float, p: Parameters) -> Estimate:
+def at_rest_with(T_mot: float, phi_B: float, p: ModelParameters) -> Estimate:
     """Estimate before anything was measured but the base: no twisting motion, the whole motor torque in the gear."""
-    flank = where(T_mot > 0.0, p.phi_B, where(T_mot < 0.0, -p.phi_B, 0.0))
+    flank = where(T_mot > 0.0, phi_B, where(T_mot < 0.0, -phi_B, 0.0))
     return Estimate(0.0, 0.0, T_mot / p.C + flank, 0.0)
 
 
-def integrated(e: Estimate, T_mot: float, h: float, p: Parameters) -> Estimate:
+def integrated(e: Estimate, T_mot: float, phi_B: float, h: float, p: ModelParameters) -> Estimate:
     """The estimate h seconds later under the motor torque T_mot (N.m)."""
     phi = e.phi + 0.5 * h * (e.omega_1 - e.omega_2)
-    T_gear = p.C * dead_zone(phi, p.phi_B)
+    T_gear = p.C * dead_zone(phi, phi_B)
     omega_1 = e.omega_1 + h * (T_mot - T_gear) / p.J_1
     omega_2 = e.omega_2 + h * (e.T_l + (1.0 - p.lambda_v) * T_gear) / p.J_2
     return Estimate(omega_1, omega_2, phi + 0.5 * h * (omega_1 - omega_2), e.T_l)

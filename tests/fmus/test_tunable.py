@@ -40,9 +40,9 @@ def turned(name: str, draw: Random) -> dict[str, float]:
 
 def test_what_a_calibration_engineer_turns_is_tunable_and_what_belongs_to_the_car_is_not() -> None:
     names = {v.name for v in tunable("DampingController")}
-    assert {"k_d", "omega_w", "k_gap", "T_pred", "T_gap", "landing_share", "demand_lead", "T_take_max"} <= names
+    assert {"k_d", "omega_w", "k_gap", "T_pred", "T_gap", "shape_1", "landing_share", "L_phi_B", "T_take_max"} <= names
     assert {"L_phi", "L_omega_1", "Ls_T_l", "L_can_phi", "T_age"} <= names
-    assert not names & {"J_1", "J_2", "C", "phi_B", "tau", "lambda_v", "k_T", "t_land", "T_max", "t_bad", "t_stale"}
+    assert not names & {"J_1", "J_2", "C", "phi_B", "tau", "phi_B_0", "lambda_v", "t_land", "T_max", "t_bad", "t_stale"}
     assert {v.name for v in tunable("TwoMassDriveline")} == {"m", "c_rr", "c_wa"}
     assert {v.name for v in tunable("ValidationVehicle")} == {"m", "mu", "c_rr", "c_wa", "g_muL", "g_muR"}
     assert "tau" not in {v.name for v in tunable("MotorTorqueLoop")}

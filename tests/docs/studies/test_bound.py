@@ -41,7 +41,7 @@ def test_one_metric_alone_can_be_smaller_than_all_jointly_and_the_others_are_kep
 
 def test_what_the_controller_does_not_reach_is_no_bound(native: Path) -> None:
     """Undamped, with springs that hardly lose anything, the gear torque still swings when the run ends."""
-    undamped = {"plant.c_slip": 1e6, "controller.k_d": 0.0, "controller.k_T": 0.0}
+    undamped = {"plant.c_slip": 1e6, "controller.k_d": 0.0}
     settings = Settings(folder=native.parent, build="native", parameters=undamped)
     with pytest.raises(SimulationError, match=r"tipin0: no bound without settling_time: .* still swings"):
         bounded("tipin0", settings)

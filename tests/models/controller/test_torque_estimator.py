@@ -9,17 +9,19 @@ from driveline.models import damping_controller
 from driveline.models.block.declaration import Real, variables
 from driveline.models.controller import T_S
 from driveline.models.controller import torque_estimator as estimator
+from driveline.models.controller.learned_gap import GapState
 from driveline.models.controller.torque_estimator import Estimate, EstimatorState
 from tests.models.controller.controllers import ROLLING
 
 BLOCK = damping_controller.BLOCK
 P = BLOCK.Parameters()
+GAP = GapState(P.phi_B, flank=1.0, innovations=0.0, before=0.0)
 IN_CONTACT = Estimate(omega_1=150.0, omega_2=148.0, phi=P.phi_B + 50.0 / P.C, T_l=-3.0)
 
 
-def estimating(e: Estimate, share: float = 1.0, late: float = 0.0) -> EstimatorState:
+def estimating(e: Estimate, share: float = 1.0, late: float = 0.0, phi_B: float = P.phi_B) -> EstimatorState:
     """With the speeds of the estimate counted from 0."""
-    return EstimatorState(0.0, e, late=late, share=share, drift=0.0, slip=0.0)
+    return EstimatorState(0.0, e, late=late, share=share, drift=0.0, slip=0.0, gap=GAP._replace(phi_B=phi_B))
 
 
 def estimate(x: EstimatorState) -> Estimate:
@@ -41,7 +43,7 @@ def distance_after(T_s: float, duration: float = 0.03) -> float:
     """Between samples T_s apart and a fine solution by the midpoint rule: rad and, at 10 Hz and so on, rad/s."""
     coarse, fine, steps = IN_CONTACT, IN_CONTACT, 3000
     for _ in range(round(duration / T_s)):
-        coarse = estimator.integrated(coarse, 80.0, T_s, P)
+        coarse = estimator.integrated(coarse, 80.0, P.phi_B, T_s, P)
     h = duration / steps
     for _ in range(steps):
         fine = advanced(fine, h, rates(advanced(fine, 0.5 * h, rates(fine, 80.0)), 80.0))
@@ -63,8 +65,8 @@ def test_it_starts_with_the_motor_torque_in_the_gear(T_mot: float, phi: float) -
 
 
 def test_the_smallest_torque_bears_on_its_flank() -> None:
-    assert estimator.at_rest_with(5e-324, P).phi == P.phi_B
-    assert estimator.at_rest_with(-5e-324, P).phi == -P.phi_B
+    assert estimator.at_rest_with(5e-324, P.phi_B, P).phi == P.phi_B
+    assert estimator.at_rest_with(-5e-324, P.phi_B, P).phi == -P.phi_B
 
 
 def test_it_starts_in_the_mode_of_the_wheel_speed_that_it_has() -> None:
@@ -73,8 +75,8 @@ def test_it_starts_in_the_mode_of_the_wheel_speed_that_it_has() -> None:
     assert with_wheel.late == without.late == 120.0
 
 
-def test_a_new_start_keeps_the_mode_alone() -> None:
-    x = EstimatorState(140.0, IN_CONTACT, late=130.0, share=0.25, drift=1.0, slip=0.5)
+def test_a_new_start_keeps_the_mode_and_the_gap_alone() -> None:
+    x = EstimatorState(140.0, IN_CONTACT, late=130.0, share=0.25, drift=1.0, slip=0.5, gap=GAP)
     for wheel in (True, False):
         fresh = estimator.start(90.0, -20.0, wheel, P)
         assert estimator.restart(x, 90.0, -20.0, P) == fresh._replace(share=0.25)
@@ -193,11 +195,12 @@ def test_an_estimate_with_more_twist_than_the_drive_train_can_bear_begins_anew(s
     p = GAINS._replace(T_max=100.0, C=128.0, phi_B=0.25)
     bound = 0.25 + 4.0 * 100.0 / 128.0
     for phi, known in ((bound, True), (math.nextafter(bound, math.inf), False)):
-        x = estimating(E_0._replace(phi=side * phi), 0.5, late=140.0)
+        x = estimating(E_0._replace(phi=side * phi), 0.5, late=140.0, phi_B=0.25)
         y = estimator.take_motor_speed(x, E_0.omega_1, False, T_S, p)
         assert (y.estimate.phi == side * phi) is known
         assert (y == estimator.restart(x, E_0.omega_1, 0.0, p)) is not known
-    assert y == EstimatorState(E_0.omega_1, ANEW, late=E_0.omega_1, share=0.5, drift=0.0, slip=0.0)
+    gap = GAP._replace(phi_B=0.25, flank=0.0)
+    assert y == EstimatorState(E_0.omega_1, ANEW, late=E_0.omega_1, share=0.5, drift=0.0, slip=0.0, gap=gap)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -206,7 +209,7 @@ def test_the_correction_itself_may_lead_beyond_the_bound(side: float) -> None:
     p = GAINS._replace(T_max=100.0, C=128.0, phi_B=0.25)
     for margin, known in ((1.125, True), (0.875, False)):
         e = E_0._replace(phi=side * (0.25 + 4.0 * 100.0 / 128.0 - margin))
-        x = estimator.take_motor_speed(estimating(e), e.omega_1 - side * 16.0, False, T_S, p)
+        x = estimator.take_motor_speed(estimating(e, phi_B=0.25), e.omega_1 - side * 16.0, False, T_S, p)
         assert (x.estimate != ANEW) is known
 
 
@@ -225,13 +228,23 @@ def test_from_whatever_estimate_a_finite_one_comes() -> None:
         assert abs(x.estimate.phi) <= P.phi_B + 4.0 * P.T_max / P.C, name
 
 
+def test_a_gap_that_is_learned_moves_the_twist_and_leaves_the_gear_torque() -> None:
+    """At the end of a crossing to the flank that drives, with a motor that was faster than expected."""
+    x = estimating(IN_CONTACT)
+    x = x._replace(gap=x.gap._replace(flank=-20.0, innovations=9.0))
+    wider = estimator.learn(x, 0.5, False, T_S, P)
+    assert wider.gap.phi_B > 1.01 * x.gap.phi_B
+    assert estimator.motion(wider, P).T_gear == pytest.approx(50.0, rel=1e-9)
+    assert estimator.learn(x, 0.5, True, T_S, P).gap.phi_B == x.gap.phi_B
+
+
 def test_what_is_expected_of_the_next_sample_is_that_of_the_model() -> None:
     """Speeds stay counted from the measured one; what is found out about slip is kept."""
-    x = EstimatorState(64.0, IN_CONTACT, late=212.0, share=1.0, drift=1.0, slip=0.5)
-    ahead = estimator.integrated(IN_CONTACT, 60.0, 0.005, P)
+    x = EstimatorState(64.0, IN_CONTACT, late=212.0, share=1.0, drift=1.0, slip=0.5, gap=GAP)
+    ahead = estimator.integrated(IN_CONTACT, 60.0, P.phi_B, 0.005, P)
     assert estimator.predict(x, 60.0, True, 0.005, P) == x._replace(estimate=ahead)
     seen = estimator.motion(x._replace(estimate=ahead), P)
-    assert seen == (64.0 + ahead.omega_1, 64.0 + ahead.omega_2, ahead.phi, P.C * (ahead.phi - P.phi_B))
+    assert seen == (64.0 + ahead.omega_1, 64.0 + ahead.omega_2, ahead.phi, P.C * (ahead.phi - P.phi_B), P.phi_B, 0.5)
 
 
 def test_the_estimate_follows_a_perfect_model() -> None:
@@ -242,6 +255,6 @@ def test_the_estimate_follows_a_perfect_model() -> None:
         T_mot = 50.0 + 20.0 * math.sin(0.02 * k)
         u = ROLLING._replace(omega_1_meas=true.omega_1, T_mot_est=T_mot, valid=False)
         x = BLOCK.update(x, u, P)
-        true = estimator.integrated(true, T_mot, T_S, P)
+        true = estimator.integrated(true, T_mot, P.phi_B, T_S, P)
     assert x.estimator.estimate.phi == pytest.approx(true.phi, abs=0.02)
     assert estimate(x.estimator).omega_2 == pytest.approx(true.omega_2, abs=0.5)

@@ -55,7 +55,7 @@ def test_what_is_declared_with_a_range_is_searched_from_its_start_within_the_bou
 
 def test_our_law_is_searched_from_what_the_formulas_make_of_the_car() -> None:
     found = space(OURS, {})
-    assert {each.name for each in found.searched} >= {"k_d", "k_T", "omega_w", "T_gap"}
+    assert {each.name for each in found.searched} >= {"k_d", "shape_2", "omega_w", "T_gap"}
     assert found.computed.keys() == design().keys() - {each.name for each in found.searched}
     assert {"lambda_v", "L_phi", "Ls_phi", "L_can_phi"} <= found.computed.keys()
     designed = design(VAN)

@@ -42,7 +42,7 @@ def test_what_is_known_is_not_run_again_and_the_record_tells_what_the_costs_depe
     assert run["controller"] == "DampingController"
     assert run["searched"]["k_d"] == [0.3, 2.55, 10.0]
     assert run["computed"]["lambda_v"] == 0.913
-    assert run["reference"]["k_T"] == 0.003
+    assert run["reference"]["k_gap"] == 0.97
     assert {"TwoMassDriveline", "ValidationVehicle", "DampingController"} <= run["fmus"].keys()
     before = searched(evaluation, tmp_path)
     monkeypatch.setattr(CostEvaluation, "measured", lambda *_: pytest.fail("a run"))
