@@ -59,7 +59,7 @@ def coverage_table() -> Table:
     (found,) = run_many(covered, [(FIRST, FOUND, True)], label="foreign loops, from anywhere")
     every = [one for chunk in chunks for one in chunk]
     table = _coverage(every)
-    return table._replace(rows=table.rows | {"from anywhere, all": _coverage(found).rows["all, all"]})
+    return table._replace(rows={**table.rows, "from anywhere, all": _coverage(found).rows["all, all"]})
 
 
 def short_table() -> Table:

@@ -45,7 +45,7 @@ def operator_meant(error: Exception) -> str:
     if not nodes:
         return ""
     if not isinstance(nodes[0], ast.Call):
-        meant = next((name for name in map(_choice, nodes) if name), "where")
+        meant: str = next((name for name in map(_choice, nodes) if name), "where")
         return f"`{ast.unparse(nodes[0])}` is known in a run alone; call `operators.{meant}` of driveline"
     function = ast.unparse(nodes[0].func)
     name = function.rpartition(".")[2]

@@ -127,7 +127,7 @@ def drive_of(recording: Measurement) -> tuple[Drive, FittedLoop | None]:
             "at which the samples were taken and not the one at which they arrived (--column time=NAME)"
         )
     loop = None if recording.T_ref is None else fitted(recording.T_ref, recording.T_mot, T_s)
-    if loop is None or not loop.answers:
+    if recording.T_ref is None or loop is None or not loop.answers:
         return Drive(T_s, recording.omega_1, recording.T_mot, recording.T_load, starts=starts), loop
     T_mot = np.where(loop.met, loop.torque, recording.T_mot)
     off = {"late_T": loop.lag, "g_T": loop.deviations["gain"] / loop.loop.gain}

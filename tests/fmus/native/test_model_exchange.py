@@ -17,7 +17,7 @@ from benchmarks.model_exchange import integrated, recorded, stepped
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.description.units import base_exponents, rate_unit
 from driveline.fmus.description.variables import interface
-from driveline.harness.cosimulation.description import attributes
+from driveline.harness.cosimulation.description import document_root
 from driveline.harness.cosimulation.limits import USUAL_LIMITS
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.models.block.types import ContinuousBlock
@@ -96,7 +96,7 @@ def test_one_fmu_is_for_both_and_the_validator_finds_nothing(folder, name):
     assert validate_fmu(str(path)) == []
     assert description.coSimulation
     assert description.modelExchange
-    (claims,) = attributes(path, USUAL_LIMITS, "ModelExchange")
+    (claims,) = (each.attrib for each in document_root(path, USUAL_LIMITS).iterfind("ModelExchange"))
     assert {value for name, value in claims.items() if name.startswith("providesDirectional")} == {"true"}
     assert not description.modelExchange.needsCompletedIntegratorStep
 

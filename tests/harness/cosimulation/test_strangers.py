@@ -157,7 +157,7 @@ def test_a_run_that_is_over_is_not_lost(tmp_path, unpacked, caplog, when, fmi):
 
 
 def test_functions_that_nobody_calls_may_be_missing(tmp_path):
-    without = {"fmi2CancelStep": "anotherName", "fmi2GetDirectionalDerivative": "another"}
+    without: dict[str, Any] = {"fmi2CancelStep": "anotherName", "fmi2GetDirectionalDerivative": "another"}
     assert len(run(System({"car": build_stranger(tmp_path, **without)}), Experiment(0.01))) == 11
     with pytest.raises(SimulationError, match="DoStep"):
         run(System({"car": build_stranger(tmp_path, fmi2DoStep="anotherName")}), Experiment(0.01))

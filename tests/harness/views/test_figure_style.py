@@ -73,7 +73,7 @@ def run(manoeuvre: Any, swing: float, duration: float, with_estimate: bool = Tru
     return found
 
 
-NAMES = "without damping", "mine", "theirs"
+NAMES: tuple[str, ...] = "without damping", "mine", "theirs"
 STEPS = run(TIPIN, 60.0, 4.0), run(TIPIN, 8.0, 4.0)
 TWO_STEPS = dict(zip(NAMES, STEPS, strict=False))
 DRIVES = run(DRIVE, 60.0, 20.0), run(DRIVE, 8.0, 20.0)
