@@ -76,7 +76,8 @@ class Results(np.ndarray):
         """Shows the run in panels over time; arguments and errors are those of `driveline.plot`."""
         from driveline import plot  # what draws is of a later room
 
-        plot(self, names, **how)
+        run: Any = self
+        plot(run, names, **how)
 
     def to_pandas(self) -> DataFrame:
         """A column a signal, over the time in s; `attrs["units"]` has the units, as of the Parquet files."""

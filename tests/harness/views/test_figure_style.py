@@ -73,9 +73,9 @@ def run(manoeuvre: Any, swing: float, duration: float, with_estimate: bool = Tru
     return found
 
 
-NAMES: tuple[str, ...] = "without damping", "mine", "theirs"
+NAMES = "without damping", "mine", "theirs"
 STEPS = run(TIPIN, 60.0, 4.0), run(TIPIN, 8.0, 4.0)
-TWO_STEPS = dict(zip(NAMES, STEPS, strict=False))
+TWO_STEPS: dict[str, np.ndarray] = dict(zip(NAMES, STEPS, strict=False))
 DRIVES = run(DRIVE, 60.0, 20.0), run(DRIVE, 8.0, 20.0)
 RECORDED = (np.array([0.0, 10.0, 20.0]), np.array([3.0, 5.0, 7.0]))
 UNITS = {"v": FileUnit("km/h", 1.0 / 3.6), "T_mot": FileUnit("kNm", 1e3)}
