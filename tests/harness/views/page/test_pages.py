@@ -135,7 +135,7 @@ def test_the_report_of_a_campaign_of_cars_shows_distributions_and_the_worst(
     written = ["--output", str(tmp_path), "--report", str(page), "--quiet"]
     assert main(["robustness", *what, "--fmus", str(both_built), *written]) == 0
     chromium.open(page.as_uri())
-    assert chromium.figure("share of the draws in %").pixels("#000000") > 300
+    assert chromium.figure("share of the draws in %").pixels(BLUE) > 300
     assert chromium.figure("gear torque in N·m").pixels(BLUE) > 300
     require_clean(page, chromium)
 
