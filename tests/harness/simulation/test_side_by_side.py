@@ -66,6 +66,7 @@ def test_the_answers_are_those_of_single_runs(both_built, lanes, in_lanes, monke
 @pytest.mark.slow
 def test_libraries_with_other_constants_in_the_cache_are_made_again(both_built, lanes, in_lanes, monkeypatch, tmp_path):
     cases = [("TwoMassDriveline", k) for k in range(4)]
+    _library.cache_clear()
     found = run_many(swing(both_built), cases, workers=1)
     there = copytree(tmp_path, tmp_path / "other")
     libraries = {path: path.read_bytes() for path in there.glob("*/lanes/*/*.so")}
