@@ -84,12 +84,8 @@ class Everywhere(Symbol):
 
 
 AS_IN_PYTHON = {
-    "SIN": np.vectorize(math.sin, otypes=[float]),
-    "COS": np.vectorize(math.cos, otypes=[float]),
-    "ATAN": np.vectorize(math.atan, otypes=[float]),
-    "TANH": np.vectorize(math.tanh, otypes=[float]),
-    "LOG": np.vectorize(math.log, otypes=[float]),
-    "EXP": np.vectorize(math.exp, otypes=[float]),
+    name: np.vectorize(getattr(math, name.lower()), otypes=[float])
+    for name in ("SIN", "COS", "ATAN", "TANH", "LOG", "EXP")
 }
 """Operations whose last bit numpy rounds otherwise."""
 
