@@ -198,7 +198,8 @@ def refused(fmus, folder: Path, capsys, *options: str) -> str:
 
 def test_other_units_are_converted_on_the_connections_and_in_the_parameters(fmus, tmp_path, caplog) -> None:
     car = build_car(tmp_path / "car", omega_1=("n", "rev/min", 2.0 * np.pi / 60.0), v_0=("start", "km/h", 1 / 3.6))
-    given = ["--plant", str(car), "--map", "plant.omega_1=n", "--map", "plant.v_0=start", "--output", str(tmp_path)]
+    (tmp_path / "theirs.toml").write_text('[plant]\nomega_1 = "n"\nv_0 = "start"\n', encoding="utf-8")
+    given = ["--plant", str(car), "--map", str(tmp_path / "theirs.toml"), "--output", str(tmp_path)]
     assert main(["ssp", "--fmus", str(fmus), *given]) == 0
     assert "plant.omega_1: converted to another unit by a LinearTransformation" in caplog.text
     ssp = tmp_path / "driveline.ssp"
