@@ -132,19 +132,23 @@ def _coverage(every: Sequence[Covered]) -> Table:
     headings = [
         *("amplitude", "channels", "recordings", "J_2, % (rms / worst)", "C, %", "phi_B, %", "skew, ms"),
         *("right, %", "in the intervals, %", "95 % interval of J_2, +- %", "widest over the bound"),
+        "bound of J_2, +- %",
     ]
     return table_of(headings, rows, labels=2)
 
 
 def _of_loops(those: Sequence[Covered]) -> list[str]:
     if not those:
-        return ["0", *["-"] * 8]
+        return ["0", *["-"] * 9]
     names = ("J_2", "C", "phi_B", "late_T", "late_L")
     share = {name: np.array([one.off[name] / one.true[name] for one in those]) for name in RIGHT}
     skew = 1e3 * np.array([max(abs(one.off[name]) for name in names[3:]) for one in those])
     right = np.all([abs(share[name]) < limit for name, limit in RIGHT.items()] + [skew < 1e3 * SKEW], axis=0)
     inside = [np.mean([abs(one.off[name]) < Z_95 * one.deviations[name] for one in those]) for name in names]
-    half = np.mean([100.0 * Z_95 * one.deviations["J_2"] / one.true["J_2"] for one in those])
+    half, least = (
+        np.mean([100.0 * Z_95 * of["J_2"] / one.true["J_2"] for one, of in zip(those, each, strict=True)])
+        for each in ([one.deviations for one in those], [one.bound for one in those])
+    )
     wide = max(float(np.mean([one.deviations[name] / one.bound[name] for one in those])) for name in names)
     errors = [_rms_and_worst(100.0 * share[name]) for name in RIGHT]
     return [
@@ -155,6 +159,7 @@ def _of_loops(those: Sequence[Covered]) -> list[str]:
         " / ".join(f"{100.0 * of:.0f}" for of in inside),
         f"{half:.2f}",
         f"{wide:.2f}",
+        f"{least:.2f}",
     ]
 
 

@@ -56,6 +56,7 @@ class Found:
         T_s: between samples in s.
         passes: through the recording.
         off: standard deviations of parameters, in their units, beside those of the likelihood.
+        shift: to another estimate, shape (free,), if there is one.
     """
 
     p: Parameters
@@ -68,6 +69,7 @@ class Found:
     T_s: float
     passes: int
     off: Mapping[str, float] = field(default_factory=dict)
+    shift: np.ndarray | None = None
 
     @cached_property
     def scale(self) -> np.ndarray:
@@ -76,6 +78,11 @@ class Found:
 
     @cached_property
     def covariance(self) -> np.ndarray:
+        """Of the free parameters, in their units; of two estimates it is such that each interval covers both."""
+        return self.of_likelihood + (0.0 if self.shift is None else np.outer(self.shift, self.shift) / Z_95**2)
+
+    @cached_property
+    def of_likelihood(self) -> np.ndarray:
         """Of the free parameters, in their units: that of the likelihood and LINEARISED, each deviation as much larger
         as the scores of windows scatter more than noise alone (sandwich); and what else they are off by."""
         inverse = np.linalg.inv(self.information.sum(axis=0) + np.diag(before(self.free)))
@@ -94,20 +101,18 @@ class Found:
     def told_by(self, name: str) -> str:
         """The channel that alone tells most of a parameter; "" where the recording tells nothing of it."""
         k, prior = self.free.index(name), np.diag(before(self.free))
-        if self.deviations[name] > UNTOLD * PRIORS[name].deviation * self._unit(name):
+        if np.sqrt(self.of_likelihood[k, k]) > UNTOLD * PRIORS[name].deviation * self._unit(name):
             return ""
         alone = [np.linalg.inv(of + prior)[k, k] for of in self.information]
         return CHANNELS[int(np.argmin(alone))]
 
     def confirmed(self, second: Parameters) -> tuple["Found", list[str]]:
-        """With intervals that cover another estimate too, and the names of those that had to be widened for it."""
-        away = {name: abs(getattr(second, name) - getattr(self.p, name)) / Z_95 for name in self.free if name in OF_CAR}
-        apart = [name for name, by in away.items() if self.told_by(name) and by > self.deviations[name]]
-        added = {
-            name: np.sqrt(away[name] ** 2 - self.covariance[k, k]) for k, name in enumerate(self.free) if name in apart
-        }
-        off = {name: float(np.hypot(self.off.get(name, 0.0), by)) for name, by in added.items()}
-        return replace(self, off={**self.off, **off}), apart
+        """With intervals that cover another estimate too, of each parameter and of what follows from them, and the
+        names of those that are further apart than their intervals."""
+        shift = np.array([getattr(second, name) - getattr(self.p, name) for name in self.free])
+        shift *= [name in OF_CAR for name in self.free]
+        apart = zip(self.free, abs(shift) / Z_95, strict=True)
+        return replace(self, shift=shift), [name for name, by in apart if by > self.deviations[name]]
 
     def _unit(self, name: str) -> float:
         return getattr(self.p, name) if PRIORS[name].positive else 1.0

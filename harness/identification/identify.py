@@ -155,7 +155,7 @@ def identify(
     log("judging it by data that were not used")
     quality = judged(predictor, found)
     second = doubted(predictor, found) if lacking(found) else found.p
-    found, apart = found.confirmed(second)
+    both, apart = found.confirmed(second)
     at = drive.longest
     valid, omega_2 = recording.valid, found.predicted.states[at.start : at.stop - 1, 1]
     wheel_speed = late_wheel_speed(recording.omega_2[at], None if valid is None else valid[at], omega_2, drive.T_s)
@@ -172,7 +172,7 @@ def identify(
     )
     name = WITH_LOAD if measured else WITHOUT_LOAD
     answers = loop if loop and loop.answers else None
-    return Identified(name, found, predictor, answers, wheel_speed, quality, warnings)
+    return Identified(name, both, predictor, answers, wheel_speed, quality, warnings)
 
 
 def of_sensors(drive: Drive, T_mot: np.ndarray) -> Noise:

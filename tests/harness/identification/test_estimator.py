@@ -111,8 +111,9 @@ def test_an_interval_covers_a_second_estimate(away: float, widened: bool) -> Non
     half = Z_95 * one.deviations["C"]
     both, apart = one.confirmed(P._replace(C=P.C + away * half))
     assert apart == (["C"] if widened else [])
-    assert Z_95 * both.deviations["C"] == pytest.approx(half * max(abs(away), 1.0))
+    assert Z_95 * both.deviations["C"] == pytest.approx(half * np.hypot(away, 1.0))
     assert both.deviations["J_2"] == one.deviations["J_2"]
+    assert both.told_by("C") == one.told_by("C") == "load torque"
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.99, "load torque"), (1.01, "")])
