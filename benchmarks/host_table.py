@@ -30,14 +30,24 @@ LINES: dict[str, str] = dict(
 )
 """Of each tool."""
 
-PACKAGES = {"FMPy": "fmpy", "libcosim": "libcosimpy", "ecos": "ecospy", "OMSimulator": "OMSimulator"}
+PACKAGES = {
+    "FMPy": "fmpy",
+    "libcosim": "libcosimpy",
+    "ecos": "ecospy",
+    "OMSimulator": "OMSimulator",
+    "pathsim": "pathsim_fmi",
+}
 
 PROGRAM = "fmusim"
 """A program, whose lines are those of a shell."""
 
 BUILT = "built from source"
 
-INTEGRATED = {'"CoSimulation"': '"ModelExchange"', "--interface-type cs": "--interface-type me"}
+INTEGRATED = {
+    '"CoSimulation"': '"ModelExchange"',
+    "CoSimulationFMU": "ModelExchangeFMU",
+    "--interface-type cs": "--interface-type me",
+}
 OF_FMI3 = {"build/native": "build/fmi3"}
 
 KINDS: dict[str, tuple[dict[str, str], ...]] = {

@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -169,3 +170,16 @@ def test_the_lines_for_fmpy_run(both_built: Path, tmp_path: Path, lines: str, an
     else:
         assert first > 11.0
         assert others == pytest.approx([first], rel=1e-6)
+
+
+@pytest.mark.skipif(find_spec("pathsim_fmi") is None, reason="pathsim-fmi is not installed")
+@pytest.mark.parametrize(("kind", "within"), [("CoSimulationFMU", 2e-4), ("ModelExchangeFMU", 1e-8)])
+def test_the_lines_for_pathsim_run(both_built: Path, tmp_path: Path, kind: str, within: float) -> None:
+    """In co-simulation a step more."""
+    (tmp_path / "build").symlink_to(both_built)
+    speeds = []
+    for lines in (LINES["FMPy"], LINES["pathsim"].replace("CoSimulationFMU", kind)):
+        done = subprocess.run([sys.executable, "-c", lines], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        speeds.append(float(done.stdout))
+    assert speeds[1] == pytest.approx(speeds[0], rel=within)
