@@ -24,7 +24,7 @@ rounds them as little as the twist, which is the integral of their difference.
 """
 
 from collections.abc import Sequence
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, cast
 
 from ..block.declaration import Real, merged
 from ..block.operators import branch, clip, maximum, where
@@ -96,11 +96,6 @@ class AllParameters(ModelParameters):
 
     T_max: float
     t_fade: float
-    phi_B_0: float
-    L_phi_B: float
-    gap_bias: float
-    gap_torque: float
-    t_cross: float
 
 
 class Estimate(NamedTuple):
@@ -125,7 +120,7 @@ class EstimatorState(NamedTuple):
 
 
 def start(omega_1: float, T_mot: float, wheel: bool, p: AllParameters) -> EstimatorState:
-    gap = learned_gap.start(p)
+    gap = learned_gap.start(cast(learned_gap.Parameters, p))
     estimate = at_rest_with(T_mot, gap.phi_B, p)
     return EstimatorState(omega_1, estimate, omega_1, where(wheel, 1.0, 0.0), drift=0.0, slip=0.0, gap=gap)
 
@@ -161,7 +156,7 @@ def take_wheel_speed(x: EstimatorState, omega_2: float, T_s: float, p: ModelPara
 
 def learn(x: EstimatorState, innovation: float, doubted: bool, T_s: float, p: AllParameters) -> EstimatorState:
     e = x.estimate
-    gap, moved = learned_gap.update(x.gap, innovation, e.phi, x.slip, doubted, T_s, p)
+    gap, moved = learned_gap.update(x.gap, innovation, e.phi, x.slip, doubted, T_s, cast(learned_gap.AllParameters, p))
     return x._replace(estimate=e._replace(phi=e.phi + moved), gap=gap)
 
 
