@@ -62,4 +62,4 @@ def predict(x: SpeedState, T_mot: float, wheel: bool, T_s: float, p: AllParamete
 
 def motion(x: SpeedState, p: Parameters) -> Motion:
     omega_2 = x.omega_1 - x.share * (x.omega_1 - x.omega_2)
-    return Motion(x.omega_1, omega_2, phi=0.0, T_gear=x.T_mot)
+    return Motion(x.omega_1, omega_2, phi=0.0, T_gear=x.T_mot, omega=x.omega_1 - omega_2)

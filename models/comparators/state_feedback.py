@@ -8,7 +8,7 @@ with the motion T_pred ahead. Without a gap there is nothing to land in.
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..controller.damping_law import twisting, washed_out
+from ..controller.damping_law import washed_out
 from ..controller.interfaces import Addition, Motion
 
 
@@ -47,4 +47,4 @@ def update(
 
 def fed_back(motion: Motion, p: Parameters) -> float:
     """The torque in N.m that the washout leaves the changing part of."""
-    return p.k_d * twisting(motion) + p.k_T * motion.T_gear
+    return p.k_d * motion.omega + p.k_T * motion.T_gear

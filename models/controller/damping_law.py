@@ -132,13 +132,13 @@ class LawState(NamedTuple):
 
 
 def start(motion: Motion, T_driver: float, p: Parameters) -> LawState:
-    return LawState(p.k_d * twisting(motion), T_driver, T_driver, T_driver, afloat=0.0, withheld=0.0)
+    return LawState(p.k_d * motion.omega, T_driver, T_driver, T_driver, afloat=0.0, withheld=0.0)
 
 
 def update(
     x: LawState, motion: Motion, expected: Motion, T_driver: float, T_s: float, p: AllParameters
 ) -> tuple[LawState, Addition]:
-    omega, change = twisting(motion), twisting(expected) - twisting(motion)
+    omega, change = motion.omega, expected.omega - motion.omega
     fed_back = p.k_d * (omega + p.T_pred / T_s * change)
     damping = clip(x.washout - fed_back, -p.T_add_max, p.T_add_max)
     grip = 1.0 - motion.slip
@@ -167,11 +167,6 @@ def update(
 
 def in_gap(motion: Motion) -> bool:
     return abs(motion.phi) < motion.phi_B
-
-
-def twisting(motion: Motion) -> float:
-    """The speed in rad/s with which the drive train twists."""
-    return motion.omega_1 - motion.omega_2
 
 
 def washed_out(stationary: float, value: float, corner: float, T_s: float) -> float:

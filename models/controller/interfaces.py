@@ -21,6 +21,7 @@ class Motion(NamedTuple):
     omega_2: Annotated[float, Real("rad/s", "speed of the wheels, motor side")]
     phi: Annotated[float, Real("rad", "twist, motor side")]
     T_gear: Annotated[float, Real("N.m", "gear torque, motor side")]
+    omega: Annotated[float, Real("rad/s", "speed of the motor less that of the wheels, before either is rounded")]
     phi_B: Annotated[float, Real("rad", "half of the gap")] = 0.0
     slip: Annotated[float, Real("1", "how clearly the wheels slip, from 0 to 1")] = 0.0
 

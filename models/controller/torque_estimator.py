@@ -170,7 +170,8 @@ def predict(x: EstimatorState, T_mot: float, wheel: bool, T_s: float, p: AllPara
 
 def motion(x: EstimatorState, p: ModelParameters) -> Motion:
     e, phi_B = x.estimate, x.gap.phi_B
-    return Motion(x.base + e.omega_1, x.base + e.omega_2, e.phi, p.C * dead_zone(e.phi, phi_B), phi_B, x.slip)
+    T_gear = p.C * dead_zone(e.phi, phi_B)
+    return Motion(x.base + e.omega_1, x.base + e.omega_2, e.phi, T_gear, e.omega_1 - e.omega_2, phi_B, x.slip)
 
 
 def counted_from(omega: float, e: Estimate) -> Estimate:

@@ -43,7 +43,7 @@ def washed_out(speeds: np.ndarray, **values: float) -> np.ndarray:
     """What the law opposes of a motor speed, over k_v; a value each sample."""
     p: Any = speed_washout.BLOCK.Parameters(k_v=1.0, **values)
     law = speed_washout.Washout()
-    motions = [Motion(float(omega), float(omega), 0.0, 0.0) for omega in speeds]
+    motions = [Motion(float(omega), float(omega), 0.0, 0.0, 0.0) for omega in speeds]
     x, opposed = law.start(motions[0], 0.0, p), []
     for motion in motions:
         x, addition = law.update(x, motion, motion, 0.0, T_S, p)
@@ -72,7 +72,7 @@ def test_between_samples_measured_speeds_are_those_of_a_rigid_drive_train() -> N
     for wheel, share in ((True, 0.75), (False, 0.25)):
         later = measured_speeds.predict(x, -40.0, wheel, 0.25, cast(Any, p))
         assert later == (95.0, 96.0, -40.0, share)
-        assert measured_speeds.motion(later, cast(Any, p)) == Motion(95.0, 95.0 + share, 0.0, -40.0)
+        assert measured_speeds.motion(later, cast(Any, p)) == Motion(95.0, 95.0 + share, 0.0, -40.0, -share)
     for side in (1.0, -1.0):
         fast = x._replace(omega_1=side * 499.0)
         for T_mot, omega_1 in ((8.0, 500.0), (8.1, 500.0), (7.0, 499.875)):

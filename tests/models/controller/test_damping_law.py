@@ -12,7 +12,7 @@ from driveline.models.block.declaration import variables
 from driveline.models.controller import T_S as SAMPLE
 from driveline.models.controller import damping_law as law
 from driveline.models.controller.damping_law import LawState
-from driveline.models.controller.interfaces import Motion
+from driveline.models.controller.interfaces import Addition, Motion
 from tests.models.controller.controllers import above, each_side
 
 P = damping_controller.BLOCK.Parameters(
@@ -22,22 +22,37 @@ P = damping_controller.BLOCK.Parameters(
 )
 """In the middle of the gap 16 N.m make omega_land 10 rad/s: the teeth may land with 8 rad/s."""
 T_S = 0.25
-STILL = Motion(omega_1=100.0, omega_2=100.0, phi=0.75, T_gear=40.0, phi_B=0.25)
+STILL = Motion(omega_1=100.0, omega_2=100.0, phi=0.75, T_gear=40.0, omega=0.0, phi_B=0.25)
 """In contact, nothing twists."""
 AFLOAT = STILL._replace(phi=0.0, T_gear=0.0)
 """The teeth between the flanks."""
 
 
+def twisting(motion: Motion) -> Motion:
+    """With the difference of its speeds."""
+    return motion._replace(omega=motion.omega_1 - motion.omega_2)
+
+
+def start(motion: Motion, T_driver: float, p: Any) -> LawState:
+    return law.start(twisting(motion), T_driver, p)
+
+
+def update(
+    x: LawState, motion: Motion, expected: Motion, T_driver: float, T_s: float, p: Any
+) -> tuple[LawState, Addition]:
+    return law.update(x, twisting(motion), twisting(expected), T_driver, T_s, p)
+
+
 def added(motion: Motion, x: LawState, T_driver: float = 50.0, p: Any = P) -> float:
     """Torque in N.m that is added to the demand when the motion stays."""
-    return sum(law.update(x, motion, motion, T_driver, T_S, p)[1])
+    return sum(update(x, motion, motion, T_driver, T_S, p)[1])
 
 
 def demanded(motions: list[Motion], T_driver: float, p: Any = P) -> list[float]:
     """T_ref in N.m of each sample under a demand that stays."""
-    x, torques = law.start(motions[0], T_driver, p), []
+    x, torques = start(motions[0], T_driver, p), []
     for motion in motions:
-        x, torque = law.update(x, motion, motion, T_driver, T_S, p)
+        x, torque = update(x, motion, motion, T_driver, T_S, p)
         torques.append(T_driver + sum(torque))
     return torques
 
@@ -46,14 +61,14 @@ def demanded(motions: list[Motion], T_driver: float, p: Any = P) -> list[float]:
     omega=st.floats(-1000.0, 1000.0), phi=st.floats(-2.0, 2.0), T_gear=st.floats(-300.0, 300.0), T=st.floats(-50, 50)
 )
 def test_a_motion_that_stays_is_not_opposed(omega: float, phi: float, T_gear: float, T: float) -> None:
-    motion = Motion(omega, omega, phi, T_gear, 0.25)
-    assert added(motion, law.start(motion, T, P), T, P._replace(t_land=0.0)) == 0.0
+    motion = Motion(omega, omega, phi, T_gear, 0.0, 0.25)
+    assert added(motion, start(motion, T, P), T, P._replace(t_land=0.0)) == 0.0
 
 
 @pytest.mark.parametrize("motion", [STILL, AFLOAT], ids=["in contact", "afloat"])
 def test_the_speed_difference_is_opposed(motion: Motion) -> None:
     """By k_d a rad/s, between the flanks too. Without a demand there is no landing."""
-    x = law.start(motion, 2.0, P)
+    x = start(motion, 2.0, P)
     assert added(motion._replace(omega_1=103.0), x, 2.0) == -2.0 * 3.0
     assert added(motion._replace(omega_2=103.0), x, 2.0) == 2.0 * 3.0
 
@@ -62,9 +77,9 @@ def test_the_speed_difference_is_opposed(motion: Motion) -> None:
 def test_a_change_of_the_demand_is_shaped_where_the_wheels_do_not_slip(slip: float, share: float) -> None:
     """By shape_1 of it at first, which a lag of half a sample forgets, and shape_2 of what the next lag still has."""
     p, motion = P._replace(shape_1=0.5, shape_2=-0.25, omega_shape=2.0), STILL._replace(slip=slip)
-    x, torques = law.start(motion, 10.0, p), []
+    x, torques = start(motion, 10.0, p), []
     for _ in range(4):
-        x, torque = law.update(x, motion, motion, 26.0, T_S, p)
+        x, torque = update(x, motion, motion, 26.0, T_S, p)
         torques.append(torque.landing)
     once, twice = (16.0, 8.0, 4.0, 2.0), (0.0, 8.0, 8.0, 6.0)
     assert torques == [share * (0.5 * a - 0.25 * b) for a, b in zip(once, twice, strict=True)]
@@ -76,7 +91,7 @@ def test_what_will_be_when_the_torque_acts_is_opposed(T_pred: float) -> None:
     p = P._replace(T_pred=T_pred)
     now, expected = STILL._replace(omega_1=101.0), STILL._replace(omega_1=104.0, omega_2=99.0)
     opposed = 2.0 * (1.0 + 4.0 * T_pred * (5.0 - 1.0))
-    x, torque = law.update(law.start(STILL, 50.0, p), now, expected, 50.0, T_S, p)
+    x, torque = update(start(STILL, 50.0, p), now, expected, 50.0, T_S, p)
     assert torque == (-opposed, 0.0)
     assert x.washout == 0.5 * opposed
 
@@ -85,19 +100,19 @@ def test_what_will_be_when_the_torque_acts_is_opposed(T_pred: float) -> None:
 @each_side
 def test_the_twist_too_is_taken_ahead_for_a_landing(side: float, T_pred_land: float) -> None:
     """Where the teeth will touch by then there is no way left to land."""
-    p, x = P._replace(T_pred_land=T_pred_land), law.start(AFLOAT, 2.0, P)
+    p, x = P._replace(T_pred_land=T_pred_land), start(AFLOAT, 2.0, P)
     for phi, speed in ((0.125, math.sqrt(64.0 + 2.0 * 18.0 * 0.125 / 0.25)), (0.25, 8.0), (1.0, 8.0)):
         expected = AFLOAT._replace(phi=side * phi * T_S / T_pred_land)
-        _, torque = law.update(x, AFLOAT, expected, side * 16.0, T_S, p)
+        _, torque = update(x, AFLOAT, expected, side * 16.0, T_S, p)
         assert side * (side * 16.0 + sum(torque)) == pytest.approx(speed, rel=1e-4)
 
 
 def test_the_washout_forgets_what_stays() -> None:
     """Each sample by the share omega_w T_s of what is left."""
-    x, torques = law.start(STILL, 50.0, P), []
+    x, torques = start(STILL, 50.0, P), []
     for _ in range(4):
         turning = STILL._replace(omega_1=108.0)
-        x, torque = law.update(x, turning, turning, 50.0, T_S, P)
+        x, torque = update(x, turning, turning, 50.0, T_S, P)
         torques.append(torque.damping)
     assert torques == [-16.0, -8.0, -4.0, -2.0]
 
@@ -115,7 +130,7 @@ def test_the_damping_is_limited_to_t_add_max_both_ways(side: float) -> None:
     """And the washout goes on by what would be opposed without a limit."""
     for turning, damping in ((29.5, 59.0), (30.0, 60.0), (30.5, 60.0), (1e6, 60.0)):
         motion = STILL._replace(omega_1=100.0 + side * turning)
-        x, torque = law.update(law.start(STILL, 50.0, P), motion, motion, 50.0, T_S, P._replace(T_add_max=60.0))
+        x, torque = update(start(STILL, 50.0, P), motion, motion, 50.0, T_S, P._replace(T_add_max=60.0))
         assert torque == (-side * damping, 0.0)
         assert x.washout == side * turning
 
@@ -158,10 +173,10 @@ def test_the_motor_is_not_driven_towards_the_flank_with_more_than_the_demand() -
 @each_side
 def test_a_demand_that_rises_will_rise_further(side: float) -> None:
     """By demand_lead times what it has risen of late, which is forgotten with omega_slow."""
-    p, x = P._replace(demand_lead=2.0), law.start(AFLOAT, -side * 2.0, P)
+    p, x = P._replace(demand_lead=2.0), start(AFLOAT, -side * 2.0, P)
     torques = []
     for _ in range(3):
-        x, torque = law.update(x, AFLOAT, AFLOAT, side * 2.5, T_S, p)
+        x, torque = update(x, AFLOAT, AFLOAT, side * 2.5, T_S, p)
         torques.append(side * (side * 2.5 + sum(torque)))
     expected = [min(math.sqrt((0.5 * T) ** 2 + 36.0), T) for T in (2.5 + 9.0, 2.5 + 4.5, 2.5 + 2.25)]
     assert torques == pytest.approx(expected)
@@ -169,23 +184,23 @@ def test_a_demand_that_rises_will_rise_further(side: float) -> None:
 
 def test_a_demand_that_falls_to_zero_is_not_led_through_the_gap_before_it_has_turned() -> None:
     """It may stop there, and then no flank is asked for."""
-    p, x = P._replace(demand_lead=1.0), law.start(AFLOAT, 40.0, P)
+    p, x = P._replace(demand_lead=1.0), start(AFLOAT, 40.0, P)
     for T_driver in (4.0, 2.0, 0.0, -2.0):
         assert added(AFLOAT, x, T_driver, p) == 0.0
     assert added(AFLOAT, x, -above(2.0), p) == pytest.approx(-8.0)
-    assert law.update(x, AFLOAT, AFLOAT, 20.0, T_S, p)[0].afloat == 0.0
-    assert law.update(x, AFLOAT, AFLOAT, 21.0, T_S, p)[0].afloat == T_S
+    assert update(x, AFLOAT, AFLOAT, 20.0, T_S, p)[0].afloat == 0.0
+    assert update(x, AFLOAT, AFLOAT, 21.0, T_S, p)[0].afloat == T_S
 
 
 @pytest.mark.parametrize("T_driver", [0.0, 2.0, -2.0])
 def test_without_a_demand_there_is_no_landing(T_driver: float) -> None:
     """T_still is none; a car that stands in its gap waits for the demand of its launch, however long."""
-    x = law.start(AFLOAT, T_driver, P)
+    x = start(AFLOAT, T_driver, P)
     for _ in range(20):
-        x, torque = law.update(x, AFLOAT, AFLOAT, T_driver, T_S, P)
+        x, torque = update(x, AFLOAT, AFLOAT, T_driver, T_S, P)
         assert torque == (0.0, 0.0)
     assert x.afloat == 0.0
-    assert law.update(x, AFLOAT, AFLOAT, above(2.0), T_S, P)[0].afloat == T_S
+    assert update(x, AFLOAT, AFLOAT, above(2.0), T_S, P)[0].afloat == T_S
     assert added(AFLOAT, x, -16.0) == -10.0 + 16.0
 
 
@@ -204,7 +219,7 @@ def test_teeth_that_touched_may_land_again() -> None:
 
 
 def test_the_time_afloat_is_counted_no_further_than_needed() -> None:
-    x = law.start(AFLOAT, 16.0, P)
+    x = start(AFLOAT, 16.0, P)
     for _ in range(20):
-        x, _ = law.update(x, AFLOAT, AFLOAT, 16.0, T_S, P)
+        x, _ = update(x, AFLOAT, AFLOAT, 16.0, T_S, P)
     assert x.afloat == P.t_land + T_S

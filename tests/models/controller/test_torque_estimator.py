@@ -244,7 +244,15 @@ def test_what_is_expected_of_the_next_sample_is_that_of_the_model() -> None:
     ahead = estimator.integrated(IN_CONTACT, 60.0, P.phi_B, 0.005, P)
     assert estimator.predict(x, 60.0, True, 0.005, P) == x._replace(estimate=ahead)
     seen = estimator.motion(x._replace(estimate=ahead), P)
-    assert seen == (64.0 + ahead.omega_1, 64.0 + ahead.omega_2, ahead.phi, P.C * (ahead.phi - P.phi_B), P.phi_B, 0.5)
+    assert seen == (
+        64.0 + ahead.omega_1,
+        64.0 + ahead.omega_2,
+        ahead.phi,
+        P.C * (ahead.phi - P.phi_B),
+        ahead.omega_1 - ahead.omega_2,
+        P.phi_B,
+        0.5,
+    )
 
 
 def test_the_estimate_follows_a_perfect_model() -> None:
