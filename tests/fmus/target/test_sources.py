@@ -95,7 +95,7 @@ def test_in_double_precision_it_is_the_model(programs: dict[str, Path], both_bui
     expected, x = [], None
     for row in inputs.tolist():
         u = CONTROLLER.Input(*row)
-        u = u._replace(valid=bool(u.valid), enable=bool(u.enable))
+        u = u._replace(valid=bool(u.valid), enable=bool(u.enable), slip_control=bool(u.slip_control))
         x = x or CONTROLLER.start(u, p)
         expected.append(tuple(map(float, CONTROLLER.output(x, u, p))))
         x = CONTROLLER.update(x, u, p)

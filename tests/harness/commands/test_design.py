@@ -198,7 +198,7 @@ def test_what_a_data_sheet_lacks_is_said_with_what_it_costs(tmp_path: Path, caps
     sheet.write_text('m = "1815 kg"\nT_max = 310\ni = 11.53\nr = "34 cm"\nJ_1 = 0.11\n', encoding="utf-8")
     assert main(["car", str(sheet)]) == 0
     screen = capsys.readouterr().out.splitlines()
-    assert len(screen) < 40
+    assert len(screen) < 44
     rows = {line.split()[0]: line.split() for line in screen if line.strip()}
     assert rows["J_1"][1:4] == ["0.11", "kg.m2", "set"]
     settling, overshoot = map(int, rows["C"][-2:])
