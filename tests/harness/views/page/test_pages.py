@@ -120,7 +120,7 @@ def test_the_report_of_an_identification_shows_prediction_and_response(
     for label, colour in (
         ("motor speed in rad/s", BLUE),
         ("motor speed over torque in dB", VERMILION),
-        ("load torque in N·m", BLUE),
+        ("load torque in N·m, wheel side", BLUE),
     ):
         assert chromium.figure(label).pixels(colour) > 100, label
     require_clean(page, chromium)
