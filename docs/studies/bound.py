@@ -171,7 +171,7 @@ def _verified(search: Search, contacts: Contacts, solution: Solution, settings: 
 
 
 COLUMNS = {metric.name: metric.column for metric in declared(Metrics) if metric.column} | {
-    "gear_torque_rms": metric_column("torque\n5-50 Hz", "N.m", 1.0, 2),
+    "gear_torque_rms": metric_column("torque\nrms", "N.m", 1.0, 2),
     "jerk_rms_to_50_Hz": metric_column("jerk\nto 50 Hz", "m/s3", 1.0, 2),
     "overshoot": metric_column("over-\nshoot", "%", 1e2, 1),
 }

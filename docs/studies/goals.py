@@ -53,6 +53,7 @@ GOALS = (
     Goal("tipin15", "overshoot", (11, 10)),
     Goal("tipin15", "jerk_rms_to_50_Hz", (4.8, 10.5)),
     Goal("tipin15", "impact_speed", (27, 25)),
+    Goal("tipin15", "crossing_time", (14, 20)),
     Goal("tipin50", "settling_time", (70, 118)),
     Goal("tipin50", "overshoot", (6, 5)),
     Goal("tipin0", "settling_time", (80, 80)),
@@ -67,6 +68,7 @@ GOALS = (
     Goal("tipin15r", "impact_speed", (9.5, 9.5)),
     Goal("drive", "gear_torque_rms", (1.95, 1.85)),
     Goal("drive", "impact_speed", (13, 12)),
+    Goal("drive", "impact_speed_90", (14.5, 13.5)),
     Goal("drive", "plateau_swing", (0.16, 0.20)),
     Goal("creep", "gear_torque_rms", (1.2, 1.3)),
     Goal("prbs", "gear_torque_rms", (5.6, 5.5)),
@@ -81,10 +83,11 @@ GOALS = (
 MONTE_CARLO = ("100 %; 0.21 / 0.25 s", "100 %; 0.21 / 0.19 s")
 """What `monte_carlo` is to say of each of the plants."""
 
-UNITS = {"settling_time": (1e3, "ms"), "response_delay": (1e3, "ms"), "withheld_time": (1e3, "ms")} | {
+UNITS = dict.fromkeys(("settling_time", "response_delay", "withheld_time", "crossing_time"), (1e3, "ms")) | {
     "overshoot": (1e2, "%"),
     "jerk_rms_to_50_Hz": (1.0, "m/s3"),
     "impact_speed": (1.0, "rad/s"),
+    "impact_speed_90": (1.0, "rad/s"),
     "gear_torque_rms": (1.0, "N.m"),
     "plateau_swing": (1.0, "N.m"),
     "stationary_torque_change": (1.0, "N.m"),

@@ -75,7 +75,7 @@ README = {
     "tip-in through the backlash at 15 km/h: settling": ("tipin15", "settling", 0, "ms"),
     "its overshoot": ("tipin15", "overshoot", 0, "%"),
     "launch: settling": ("launch", "settling", 0, "ms"),
-    "uneven drive: gear torque, 5-50 Hz rms": ("drive", "torque 5-50 Hz", 1, "N·m"),
+    "uneven drive: gear torque, 5-50 Hz rms": ("drive", "torque rms", 1, "N·m"),
     "torque withheld from the driver in a tip-in": ("tipin15", "torque withheld", 0, "ms of the step"),
     "stationary change of the torque after it": ("tipin15", "stat. change", 2, "N·m"),
 }

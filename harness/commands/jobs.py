@@ -154,6 +154,7 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
         **({"digests": digests} if digests else {}),
         "parameters": {**own, **made.parameters},
         **({"road_load": made.road_load} if made.road_load else {}),
+        **({"frequency": made.frequency} if made.frequency else {}),
         "seed": made.seed,
         "mapping": made.mapping,
     }

@@ -22,11 +22,13 @@ class Results(np.ndarray):
 
     Attributes:
         units: by column; what has none is not in it.
+        frequency: at which the drive train swings, Hz; None: it is not known.
         file: in which the rows are; None: in memory.
     """
 
     units: Mapping[str, str]
     file: RowFile | None
+    frequency: float | None = None
 
     def __new__(cls, table: np.ndarray, units: Mapping[str, str], file: RowFile | None = None) -> Self:
         made = table.view(cls)
@@ -36,6 +38,7 @@ class Results(np.ndarray):
     def __array_finalize__(self, source: Any) -> None:
         self.units = getattr(source, "units", {})
         self.file = getattr(source, "file", None)
+        self.frequency = getattr(source, "frequency", None)
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, str) and key not in (names := self.dtype.names or ()):
@@ -66,10 +69,10 @@ class Results(np.ndarray):
 
     def __reduce__(self) -> Any:
         make, arguments, state = super().__reduce__()  # type: ignore[misc]
-        return make, arguments, (state, self.units)
+        return make, arguments, (state, self.units, self.frequency)
 
     def __setstate__(self, state: Any) -> None:
-        own, self.units = state
+        own, self.units, self.frequency = state
         super().__setstate__(own)
 
     def plot(self, names: Iterable[str] = (), **how: Any) -> None:

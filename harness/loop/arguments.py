@@ -38,6 +38,10 @@ ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "control": (lambda value: _number(value) and value in (True, False), "True or False"),
     "parameters": (lambda value: _texts(value, object), "a dictionary such as {'plant.J_1': 0.06}"),
     "road_load": (lambda value: _texts(value, Real), "a dictionary such as {'m': 1450.0}"),
+    "frequency": (
+        lambda value: value is None or (isinstance(value, Real) and 0.0 < float(value) < inf),
+        "a number of Hz above 0, or None",
+    ),
     "step_size": (lambda value: isinstance(value, Real) and 0.0 < float(value) < inf, "a number of seconds above 0"),
     "scheme": (lambda value: isinstance(value, Scheme | str), "a Scheme or its name"),
     "seed": (lambda value: isinstance(value, Integral) and int(value) >= 0, "a whole number from 0 on"),

@@ -12,7 +12,7 @@ from ..cosimulation.system import System
 from ..cosimulation.wiring import fit, out_of_bounds, require
 from .built_fmus import built
 from .places import PLANTS, ROAD_LOAD
-from .settings import Settings, loop
+from .settings import Settings, loop, own_frequency
 
 LOG = logging.getLogger(__name__)
 
@@ -36,8 +36,8 @@ def built_with(
     _require_of_plant(assigned, str(given.plant))
     made = built(given)
     system = loop(made)
-    values, car = _of_files(system, vehicle, parameters) if vehicle or parameters else ({}, {})
-    made = dataclasses.replace(made, parameters=values | dict(assigned), road_load=car)
+    values, car, frequency = _of_files(system, vehicle, parameters) if vehicle or parameters else ({}, {}, None)
+    made = dataclasses.replace(made, parameters=values | dict(assigned), road_load=car, frequency=frequency)
     require(out_of_bounds(fit(system, parameters=made.parameters), made.parameters))
     return made
 
@@ -60,9 +60,9 @@ def _require_of_plant(names: Collection[str], plant: str) -> None:
 
 def _of_files(
     system: System, vehicle: Path | None, parameters: Path | None
-) -> tuple[dict[str, float], dict[str, float]]:
-    """The parameters `instance.name` that the FMUs have, and by name what the plant of somebody else does not tell of
-    its car: what the file of the vehicle has, else what the default car has."""
+) -> tuple[dict[str, float], dict[str, float], float | None]:
+    """The parameters `instance.name` that the FMUs have; by name what the plant of somebody else does not tell of its
+    car: what the file of the vehicle has, else what the default car has; and the frequency of the car of a file, Hz."""
     from ...fmus.building.one_car import of_one_car
     from ...fmus.building.parameter_files import for_instances, of_plants, read_files, require_taken, units
     from ...fmus.catalogue import FMUS
@@ -82,10 +82,10 @@ def _of_files(
     meant = {name: unit for name, unit in units().items() if name in values}
     plant = system.instances["plant"]
     car: dict[str, float] = {}
+    usual = FMUS[PLANTS[0]].block.Parameters._field_defaults
     if "plant" not in system.own and vehicle is not None:
         if lacking := sorted(of_plants() & values.keys() - names["plant"]):
             LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
-        usual = FMUS[PLANTS[0]].block.Parameters._field_defaults
         car = {name: values.get(name, usual[name]) for name in ROAD_LOAD if name not in names["plant"]}
     require(
         problem
@@ -93,7 +93,7 @@ def _of_files(
         for name in sorted(names[instance] & meant.keys())
         if (problem := _other_unit(interface, f"{instance}.{name}", meant[name], system.mapping))
     )
-    return for_instances(values, names), car
+    return for_instances(values, names), car, own_frequency({**usual, **values}) if vehicle else None
 
 
 def _other_unit(interface: Interface, name: str, meant: str, mapping: Mapping[str, str]) -> str | None:

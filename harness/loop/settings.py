@@ -4,6 +4,7 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
+from math import pi, sqrt
 from os import PathLike
 from pathlib import Path
 from typing import TypedDict, Unpack
@@ -39,6 +40,7 @@ class RunChanges(TypedDict, total=False):
     control: bool
     parameters: Mapping[str, float] | None
     road_load: Mapping[str, float] | None
+    frequency: float | None
     step_size: float
     scheme: Scheme | str
     seed: int
@@ -67,6 +69,8 @@ class Settings:
         parameters: `instance.variable` -> value, beside the start and the seeds that a run sets; `instance.variable@t`
             -> value of a tunable one from the time t in s on.
         road_load: what the road load takes of a plant that has no such parameter: i, r, m, g, c_rr, c_wa -> value.
+        frequency: at which the drive train swings, Hz, for the band of the metrics; None: by C, J_1 and J_2 among the
+            parameters of the controller, where all are, else that of the default car.
         step_size: communication step in s.
         scheme: when outputs reach inputs.
         seed: of all noise and jitter.
@@ -88,6 +92,7 @@ class Settings:
     control: bool = True
     parameters: Mapping[str, float] = field(default_factory=dict)
     road_load: Mapping[str, float] = field(default_factory=dict)
+    frequency: float | None = None
     step_size: float = STEP_SIZE
     scheme: Scheme = Scheme.PROPAGATED
     seed: int = 1
@@ -135,6 +140,17 @@ class Settings:
     def with_parameters(self, parameters: Mapping[str, float]) -> "Settings":
         """The same with these parameters too, `instance.variable` -> value."""
         return self.replace(parameters={**self.parameters, **parameters})
+
+
+def own_frequency(car: Mapping[str, float]) -> float | None:
+    """Frequency in Hz at which a drive train swings, sqrt(C (1/J_1 + 1/J_2))/(2 pi), None where it is not told.
+
+    Args:
+        car: its entries in SI units, motor side.
+    """
+    if not {"C", "J_1", "J_2"} <= car.keys():
+        return None
+    return sqrt(car["C"] * (1.0 / car["J_1"] + 1.0 / car["J_2"])) / (2.0 * pi)
 
 
 def _read_mapping(path: Path) -> dict[str, str]:

@@ -15,7 +15,7 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured
 from .oscillation import SPAN, amplitude
 from .run_metrics import Metrics
-from .spectrum import TO_50_HZ, band_rms
+from .spectrum import TO_50_HZ, band_rms, own_band
 from .step_response import Response, height_of_step, response, settling_time
 
 STATIONARY, FADED = 0.6, 0.9
@@ -24,6 +24,9 @@ after a change of the demand fades."""
 
 WINDOW = (-0.2, 4.0)
 """From and to when in s, after a step, its rms and peak values are taken."""
+
+FIRM = 0.1
+"""Time in s for which teeth that have met for good stay together: a bounce is half a period of the drive train."""
 
 WITHHELD = 2.0
 """Time in s after a step, in which what is withheld from the driver counts."""
@@ -57,7 +60,7 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     """
     require_kind("results", results, np.ndarray, "results of a run, as simulate gives them")
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
-    every, t_0 = _stride(results, T_s), manoeuvre.t_0
+    every, t_0, band = _stride(results, T_s), manoeuvre.t_0, own_band(getattr(results, "frequency", None))
     rows, sampled = results, results[::every]
     if (
         getattr(results, "file", None) is None
@@ -82,6 +85,10 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     def step() -> Response:
         return response(t(), T_gear(), t_0, dT())
 
+    @cache
+    def impacts() -> np.ndarray:
+        return impact_speeds(rows, t_0)
+
     def windowed(signal: np.ndarray) -> np.ndarray:
         return signal if manoeuvre.dT is None else _piece(signal, t(), t_0 + WINDOW[0], t_0 + WINDOW[1])
 
@@ -89,9 +96,11 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         "settling_time": lambda: settling_time(T_gear(), T_s, t_0, dT()),
         "overshoot": lambda: step().overshoot,
         "damping_ratio": lambda: step().damping_ratio,
-        "gear_torque_rms": lambda: band_rms(windowed(T_gear()), T_s),
-        "jerk_rms": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, derivative=True),
-        "impact_speed": lambda: impact_speed(rows, t_0),
+        "gear_torque_rms": lambda: band_rms(windowed(T_gear()), T_s, band),
+        "jerk_rms": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, band, derivative=True),
+        "impact_speed": lambda: float(impacts().max(initial=0.0)),
+        "impact_speed_90": lambda: float(np.quantile(impacts(), 0.9)) if len(impacts()) else 0.0,
+        "crossing_time": lambda: crossing_time(rows, t_0),
         "response_delay": lambda: step().delay,
         "withheld_time": lambda: withheld_time(_piece(e(), t(), t_0, t_0 + WITHHELD), T_s, dT()),
         "stationary_torque_change": lambda: stationary_change(sampled["controller.T_driver"], e(), T_s),
@@ -159,8 +168,27 @@ def withheld_time(e: np.ndarray, T_s: float, dT: float) -> float:
     return -float(np.sum(e)) * T_s / dT + 0.0  # nothing withheld is 0, not -0
 
 
-def impact_speed(results: Rows, t_0: float) -> float:
-    """Largest speed in rad/s, motor side, with which the teeth meet from t_0 on; 0 if they never do.
+def crossing_time(results: Rows, t_0: float) -> float:
+    """Longest time in s from where the teeth part to where they meet for good, from t_0 on; 0 if they never part.
+
+    They meet for good where they stay together for FIRM s, or at the end of the run; one that has not ended does not
+    count. Teeth that are apart at t_0 part then.
+    """
+    t = results["time"]
+    since = int(np.searchsorted(t, t_0 - 1e-9))
+    together = np.concatenate(([True], results["plant.T_gear"][since:] != 0.0, [False])).astype(np.int8)
+    parts, meets = (np.flatnonzero(np.diff(together) == change) for change in (-1, 1))
+    if not len(meets):
+        return 0.0
+    interval = float(t[1] - t[0])
+    firm = (parts[1:] - meets) * interval >= FIRM
+    begins = parts[:-1][np.concatenate(([True], firm[:-1]))]
+    ends = meets[firm]
+    return float((ends - begins[: len(ends)]).max(initial=0)) * interval
+
+
+def impact_speeds(results: Rows, t_0: float) -> np.ndarray:
+    """The speeds in rad/s, motor side, with which the teeth meet from t_0 on.
 
     The gap closes between two rows when T_gear leaves zero or changes its sign, at the moment to which its
     rise after them leads back. The speed is that of the twist, omega_1 - omega_2, at this moment: as it grew in
@@ -182,7 +210,7 @@ def impact_speed(results: Rows, t_0: float) -> float:
     in_gap = (side[closes - 1] == 0) & (side[closes] == 0)
     growth = np.where(in_gap, speed - before, after - speed)
     part = _part_of_interval(results["plant.T_gear"], closes)
-    return float((speed + part * growth).max(initial=0.0))
+    return speed + part * growth
 
 
 def _never_apart(side: np.ndarray) -> bool:

@@ -10,15 +10,17 @@ from .notebook_table import NotebookTable
 GearTorqueRms = Annotated[
     float,
     Metric(
-        "N.m", "rms from 5 to 50 Hz of the gear torque, which wears the gear", Column("torque\n5-50 Hz", "N.m", 1.0, 1)
+        "N.m",
+        "rms of the gear torque in the band of the drive train (5 to 50 Hz if it swings at 8), which wears the gear",
+        Column("torque\nrms", "N.m", 1.0, 1),
     ),
 ]
 JerkRms = Annotated[
     float,
     Metric(
         "m/s3",
-        "rms from 5 to 50 Hz of the jerk of the body, which the passengers feel",
-        Column("jerk\n5-50 Hz", "m/s3", 1.0, 1),
+        "rms of the jerk of the body in that band, which the passengers feel",
+        Column("jerk\nrms", "m/s3", 1.0, 1),
     ),
 ]
 
@@ -60,6 +62,22 @@ class Metrics(NotebookTable):
             "rad/s",
             "largest with which the teeth meet after the backlash, motor side",
             Column("impact\nspeed", "rad/s", 1.0, 1),
+        ),
+    ]
+    impact_speed_90: Annotated[
+        float,
+        Metric(
+            "rad/s",
+            "which nine of ten impacts do not exceed: how the gear clatters over a drive",
+            Column("nine of\nten", "rad/s", 1.0, 1),
+        ),
+    ]
+    crossing_time: Annotated[
+        float,
+        Metric(
+            "s",
+            "longest from where the teeth part to where they meet for good, bounces included",
+            Column("crossing", "ms", 1e3, 0),
         ),
     ]
     response_delay: Annotated[

@@ -4,7 +4,18 @@ import numpy as np
 
 from .declaration import Absent
 
+FREQUENCY = 8.0
+"""At which the drive train of the default car swings, Hz: sqrt(C (1/J_1 + 1/J_2))/(2 pi)."""
+
 DRIVE_TRAIN, TO_50_HZ = (5.0, 50.0), (0.0, 50.0)
+"""Bands in Hz: what the drive train of the default car makes, and all that is felt."""
+
+
+def own_band(frequency: float | None) -> tuple[float, float]:
+    """The band in Hz, to a tenth, of a drive train that swings at this frequency in Hz, None: as the default car."""
+    low, high = (round(edge * (frequency or FREQUENCY) / FREQUENCY, 1) for edge in DRIVE_TRAIN)
+    return low, high
+
 
 MOST_AT_ONCE = 2**18
 """Samples up to which one transform takes all; it takes 100 bytes a sample where their number is prime."""

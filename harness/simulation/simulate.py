@@ -17,7 +17,7 @@ from ..cosimulation.runs import run
 from ..cosimulation.system import Port
 from ..loop.built_fmus import require_there
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
-from ..loop.settings import Changes, Settings, loop, running
+from ..loop.settings import Changes, Settings, loop, own_frequency, running
 from ..loop.settings import settings as settings_of
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -40,7 +40,7 @@ def simulate(
     Args:
         settings: of the run, or only the name or file of its plant; by default those of `Settings()`.
         changes: fields of the settings that are to be others: plant, controller, motor, can, control, parameters,
-            step_size, scheme, seed, folder, build, mapping, limits, tolerance.
+            frequency, step_size, scheme, seed, folder, build, mapping, limits, tolerance.
 
     Returns:
         Structured array with the units of its columns: a row for each instant k * step_size, k = 0, 1, ..., with
@@ -67,7 +67,7 @@ def simulate(
         label=manoeuvre.name,
     )
     try:
-        return run(loop(made), experiment)
+        results = run(loop(made), experiment)
     except SimulationError as refusal:
         if {"plant.mu", "plant.g_muL", "plant.g_muR"}.isdisjoint(made.parameters) or "omega_wheel_" not in str(refusal):
             raise
@@ -75,6 +75,9 @@ def simulate(
         raise SimulationError(
             f"{refusal}; the wheels spin, as {manoeuvre.name} demands more than the road holds; {easing} ease off"
         ) from None
+    told = {name.partition(".")[2]: value for name, value in given.items() if name.startswith("controller.")}
+    results.frequency = made.frequency or own_frequency(told)
+    return results
 
 
 def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:

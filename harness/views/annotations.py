@@ -27,8 +27,8 @@ BAND = f"settled: ± {100.0 * SETTLED:.0f} % of the step"
 SAID = {
     "overshoot": "overshoot",
     "settling_time": "settling",
-    "gear_torque_rms": "5-50 Hz rms",
-    "jerk_rms": "5-50 Hz rms",
+    "gear_torque_rms": "rms",
+    "jerk_rms": "rms",
 }
 """How a note names a metric."""
 

@@ -53,6 +53,7 @@ TERMS: dict[str, tuple[Term, ...]] = {
         Term("settling_time", 1.0, 0.02),
         Term("gear_torque_rms", 1.0, 0.3),
         Term("impact_speed", 0.5, 2.0),
+        Term("impact_speed_90", 0.25, 2.0),
         Term("plateau_swing", 1.0, 0.1),
         Term("stationary_torque_change", 0.25, 0.05),
     ),
@@ -63,6 +64,7 @@ TERMS: dict[str, tuple[Term, ...]] = {
     "response": (
         Term("response_delay", 3.0, 0.0),
         Term("withheld_time", 1.0, 0.003),
+        Term("crossing_time", 0.5, 0.01),
     ),
 }
 """What counts, by the groups of `Costs`."""

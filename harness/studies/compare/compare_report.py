@@ -61,7 +61,7 @@ def verdict(ratios: Mapping[str, float], controller: str) -> str:
     worst = max(known, key=known.__getitem__)
     better, median = sum(ratio < 1.0 for ratio in known.values()), float(np.median(list(known.values())))
     return (
-        f"Damping by {controller} lowers the oscillation of the gear torque (5-50 Hz rms) in {better} of {len(known)} "
+        f"Damping by {controller} lowers the oscillation of the gear torque (rms) in {better} of {len(known)} "
         f"runs, to {100 * median:.0f} % in the median and to {100 * known[worst]:.0f} % where it helps least ({worst})."
     )
 

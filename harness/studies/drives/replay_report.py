@@ -68,7 +68,7 @@ def verdict(rides: Mapping[str, RideMetrics], odd: Sequence[str]) -> str:
     (_, undamped), (name, damped), *_ = rides.items()
     doubt = f"The recording is not plausible ({len(odd)} {'finding' if len(odd) == 1 else 'findings'}); if it is true, "
     return (
-        f"{doubt if odd else ''}{name} takes the 5-50 Hz rms of the gear torque from {undamped.gear_torque_rms:.3g} to "
+        f"{doubt if odd else ''}{name} takes the rms of the gear torque from {undamped.gear_torque_rms:.3g} to "
         f"{damped.gear_torque_rms:.3g} N·m and that of the body jerk from {undamped.jerk_rms:.3g} to "
         f"{damped.jerk_rms:.3g} m/s³."
     )

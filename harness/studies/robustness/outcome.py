@@ -36,7 +36,7 @@ METRICS = (*declared(Metrics), PEAK)
 SHOWN: Mapping[str, Column] = {
     metric.name: metric.column
     for metric in METRICS
-    if metric.column and metric.name not in ("damping_ratio", "jerk_rms")
+    if metric.column and metric.name not in ("damping_ratio", "jerk_rms", "impact_speed_90", "crossing_time")
 } | {"jerk_rms_to_50_Hz": Column("jerk\nto 50 Hz", "m/s3", 1.0, 1)}
 """The metrics of the tables; the damping ratio is too rough for shares of runs."""
 

@@ -10,7 +10,7 @@ from driveline.harness.base.errors import WiringError
 from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.arguments import ARGUMENTS
 from driveline.harness.loop.places import PLACES
-from driveline.harness.loop.settings import Changes, Settings, settings
+from driveline.harness.loop.settings import Changes, Settings, own_frequency, settings
 
 
 def test_settings_are_given_as_a_record_a_plant_or_keyword_arguments_which_are_its_fields() -> None:
@@ -54,3 +54,17 @@ def test_what_no_run_has_is_refused() -> None:
         settings(seed="two")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"^there is no setting sed; did you mean seed\?$"):
         settings(sed=2)  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, float("inf"), "8"])
+def test_a_frequency_is_a_number_of_hertz(value: Any) -> None:
+    assert Settings(frequency=2.5).frequency == 2.5
+    with pytest.raises(WiringError, match=r"frequency = .*: it must be a number of Hz above 0, or None"):
+        Settings(frequency=value)
+
+
+def test_the_frequency_of_a_car_is_that_of_its_two_masses_on_their_spring() -> None:
+    car = {"C": 117.4, "J_1": 0.055, "J_2": 0.3}
+    assert own_frequency(car) == pytest.approx(7.999, abs=5e-4)
+    for name in car:
+        assert own_frequency({key: value for key, value in car.items() if key != name}) is None

@@ -1,5 +1,6 @@
 """Each metric on a signal whose answer is known."""
 
+import pickle
 from dataclasses import replace
 from math import exp, pi, sqrt
 from typing import Any
@@ -9,15 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from driveline.harness.cosimulation.results import Results
 from driveline.harness.loop.places import T_S
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.metrics.damage import damage
 from driveline.harness.metrics.declaration import Absent, declared
-from driveline.harness.metrics.evaluate import COLUMNS, evaluate, impact_speed
+from driveline.harness.metrics.evaluate import COLUMNS, FIRM, crossing_time, evaluate, impact_speeds
 from driveline.harness.metrics.oscillation import amplitude
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.metrics.spectrum import band_rms
+from driveline.harness.metrics.spectrum import band_rms, own_band
 from driveline.harness.metrics.step_response import response
 
 
@@ -173,9 +175,9 @@ def test_impact_speed_is_the_speed_of_the_twist_when_the_torque_leaves_zero():
     T_gear = np.array([-1.0, 0.0, 0.0, 1.0, 5.0, 0.0, 0.0, -2.0, -6.0])
     speed = np.array([50.0, 10.0, 20.0, 99.0, 99.0, 4.0, 8.0, -12.0, 6.0])
     results = run(duration=8e-3, T_gear=T_gear, omega_1=100.0 + speed, omega_2=100.0)
-    assert impact_speed(results, 0.0) == 27.5
-    assert impact_speed(results, 0.003) == 10.0
-    assert impact_speed(results, 0.1) == 0.0
+    assert impact_speeds(results, 0.0).tolist() == [27.5, 10.0]
+    assert impact_speeds(results, 0.003).tolist() == [10.0]
+    assert impact_speeds(results, 0.1).tolist() == []
 
 
 @pytest.mark.parametrize("interval", [1e-3, 1e-4])
@@ -188,7 +190,52 @@ def test_impact_speed_does_not_depend_on_the_rows(interval):
     into = 2000.0 * meeting * np.clip(moving - meeting, 0.0, None)
     assert twist.max() == 0.4
     results = run(duration=0.1, interval=interval, T_gear=200.0 * into, omega_1=100.0 + speed, omega_2=100.0)
-    assert impact_speed(results, 0.0) == pytest.approx(2000.0 * meeting, rel=0.001)
+    assert impact_speeds(results, 0.0) == pytest.approx([2000.0 * meeting], rel=0.001)
+
+
+def test_nine_of_ten_impacts_do_not_exceed_their_quantile():
+    """Eleven impacts at 1, 2, ... 11 rad/s, 20 ms apart."""
+    t = np.arange(501) * 1e-3
+    k = np.arange(501) % 40
+    together = (k < 20) & (t < 0.43)
+    speed = np.where(together, 0.0, 1.0 + np.floor(np.arange(501) / 40.0))
+    results = run(duration=0.5, T_gear=np.where(together, 5.0, 0.0), omega_1=100.0 + speed, omega_2=100.0)
+    found = impact_speeds(results, 0.0)
+    metrics = evaluate(results, replace(MANOEUVRES["creep"], t_0=0.0))
+    assert metrics.impact_speed == found.max()
+    assert metrics.impact_speed_90 == np.quantile(found, 0.9) < found.max()
+    assert evaluate(run(), MANOEUVRES["creep"]).impact_speed_90 == 0.0
+
+
+def crossings(*apart, t_0=0.0):
+    """The crossing time of a run of 2 s in which the teeth are apart between these instants in ms."""
+    T_gear = np.full(2001, 5.0)
+    for begin, end in apart:
+        T_gear[begin:end] = 0.0
+    return 1e3 * crossing_time(run(duration=2.0, T_gear=T_gear), t_0)
+
+
+def test_a_crossing_lasts_from_where_the_teeth_part_to_where_they_meet_for_good():
+    firm = round(1e3 * FIRM)
+    assert crossings() == 0.0
+    assert crossings((500, 560)) == pytest.approx(60.0)
+    assert crossings((500, 560), (560 + firm, 570 + firm)) == pytest.approx(60.0)
+    assert crossings((500, 560), (559 + firm, 570 + firm)) == pytest.approx(70.0 - 1.0 + firm + 1.0), "a bounce"
+    assert crossings((100, 400), (500, 520), t_0=0.45) == pytest.approx(20.0), "before t_0 none counts"
+    assert crossings((400, 520), t_0=0.5) == pytest.approx(20.0), "apart at t_0"
+    assert crossings((500, 520), (1000, 2001)) == pytest.approx(20.0), "one that has not ended"
+
+
+@pytest.mark.parametrize(("frequency", "band"), [(None, (5.0, 50.0)), (7.999, (5.0, 50.0)), (2.5, (1.6, 15.6))])
+def test_the_band_of_the_rms_follows_from_the_frequency_of_the_car(frequency, band):
+    """Of two sines of 1 N.m, within it and below it, the first one counts."""
+    assert own_band(frequency) == band
+    t = np.arange(6001) * 1e-3
+    x = np.sin(2 * pi * 1.1 * band[0] * t) + np.sin(2 * pi * 0.6 * band[0] * t)
+    results = Results(run(T_gear=x), {})
+    results.frequency = frequency
+    assert evaluate(results, MANOEUVRES["creep"]).gear_torque_rms == pytest.approx(1.0 / sqrt(2), rel=0.1)
+    assert pickle.loads(pickle.dumps(results)).frequency == frequency
 
 
 def test_metrics_of_a_step_are_not_given_for_a_drive_or_a_pulse():
