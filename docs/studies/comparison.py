@@ -2,41 +2,33 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import product
-from math import inf, isnan, nan
+from math import inf, isnan
 from typing import NamedTuple
-
-import numpy as np
 
 from driveline.harness.design.design_trials import mean
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
 from driveline.harness.loop.places import COMPARATORS, PLACES, PLANTS
-from driveline.harness.manoeuvres.catalogue import KMH, MANOEUVRES, step
-from driveline.harness.metrics.declaration import declared
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
-from driveline.harness.studies.robustness import outcome
+from driveline.harness.studies.robustness.outcome import SHOWN
 
 from .study import Cell, Column, Measured, Study, Table, cell, number
 
 OURS = PLACES["controller"][0]
-SHOWN = {metric.name: metric.column for metric in declared(Metrics) if metric.column} | outcome.SHOWN
-
 MARK = "TrueMotion"
 """No product: it sees the true motion."""
 
 CONTROLLERS = (OURS, *COMPARATORS)
 DRIVEN = ("tipin15", "tipin50", "tipin0", "tipout", "launch", "tipin15r", "drive", "creep", "prbs")
 
-COMPARED = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms_to_50_Hz", "crossing_time")
+COMPARED = ("settling_time", "overshoot", "gear_torque_rms", "jerk_rms_to_50_Hz")
 """What the controllers are compared in."""
 
 PRICES = (*COMPARED, "response_delay", "withheld_time", "stationary_torque_change", "impact_speed")
 """What being better in one of them may cost."""
-
-RISES = (0.0, 0.04, 0.08, 0.12, 0.16, 0.2, 0.25, 0.3)
-"""Times in s within which a demand rises, for the response at equal jerk."""
 
 DEARER = 1.1
 """Over ours, from when on a metric is a price."""
@@ -111,42 +103,9 @@ def _compared(
             yield f"{column.plain_heading} {shown} {column.unit} instead of {of_ours}"
 
 
-def equal_jerk_table(seeds: Sequence[int] = HELD_OUT_SEEDS[:1]) -> Table:
-    """How long the demand of a tip-in must rise for the jerk that ours has in a jump, and its response then."""
-
-    def measured(run: tuple[str, str, float, int]) -> tuple[float, float]:
-        plant, controller, rise, seed = run
-        course = step("", "", 15 * KMH, -12.0, 100.0, rise)
-        metrics = evaluate(simulate(course, plant, controller=controller, seed=seed), course)
-        return metrics.jerk_rms_to_50_Hz, metrics.response_delay
-
-    runs = list(product(PLANTS, CONTROLLERS, RISES, seeds))
-    metrics = np.reshape(
-        run_many(measured, runs, label="equal jerk"), (len(PLANTS), len(CONTROLLERS), -1, len(seeds), 2)
-    )
-    rows: dict[str, tuple[Cell, ...]] = {}
-    for plant, of_plant in zip(PLANTS, metrics.mean(axis=3), strict=True):
-        most = of_plant[0, 0, 0]
-        pairs = [_at_jerk(most, *of_controller.T) for of_controller in of_plant]
-        for k, what in enumerate(("rise", "time to 90 %")):
-            rows[f"{plant}: {what}, ms"] = tuple(cell(1e3 * pair[k]) for pair in pairs)
-    return Table("tip-in at 15 km/h", tuple(Column(name, "", 0) for name in CONTROLLERS), rows)
-
-
-def _at_jerk(most: float, jerk: np.ndarray, delay: np.ndarray) -> tuple[float, float]:
-    """The shortest of RISES, between two of them by a straight line, with no more than this jerk, and the delay."""
-    calm = np.flatnonzero(jerk <= most)
-    if not len(calm):
-        return nan, nan
-    k = max(int(calm[0]), 1)
-    part = float(np.clip((most - jerk[k - 1]) / (jerk[k] - jerk[k - 1]), 0.0, 1.0)) if calm[0] else 0.0
-    rise, after = (float(of[k - 1] + part * (of[k] - of[k - 1])) for of in (np.array(RISES), delay))
-    return rise, after
-
-
 def measure() -> Measured:
     found = all_found(DRIVEN)
-    return Measured({**tables(found), "equal_jerk": equal_jerk_table(), "better": better_table(found)})
+    return Measured({**tables(found), "better": better_table(found)})
 
 
 def again() -> dict[str, Table]:

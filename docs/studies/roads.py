@@ -30,7 +30,7 @@ from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import signals, start
-from driveline.harness.studies.faults.fault_injection import COUNTED, with_faults
+from driveline.harness.studies.faults.fault_injection import with_faults
 from driveline.models.controller.supervision import FALLBACK
 from driveline.models.signal_faults import FRAME, LATE, MOTOR_SPEED, MOTOR_TORQUE
 
@@ -161,20 +161,6 @@ def with_abs() -> Iterator[Run]:
         yield Run(f"ABS, mu {mu:g}", pulses(frequency, T_brake), 1.0, {"mu": mu})
 
 
-def active(t: np.ndarray) -> np.ndarray:
-    """Whether ABS is, as it tells: from the second period of 50 Hz on in which the brakes are pulsed."""
-    return (t >= 1.02) & (t < 4.2)
-
-
-def with_abs_and_regeneration() -> Iterator[Run]:
-    for name, told in (("", NOTHING_TOLD), (", told", {"controller.slip_control": active})):
-        for mu, frequency, T_brake, T_driver in product(
-            (0.2, 0.5, 1.0), (4.0, 5.0, 8.0, 12.0), (500.0, 1900.0, 4000.0), (-20.0, -50.0, -80.0)
-        ):
-            course = pulses(frequency, T_brake, T_driver=T_driver)
-            yield Run(f"ABS with regeneration{name}, mu {mu:g}", course, 1.0, {"mu": mu}, told=told)
-
-
 DRIVES = (
     MANOEUVRES["launch"],
     hill_start("100 N.m", 0.12, lines((1.0, 0.0), (1.1, 100.0))),
@@ -191,17 +177,6 @@ def with_late_signals(what: str, signal: int, late: float, told: Mapping[str, So
         yield Run(f"{what} {1e3 * late:.0f} ms late", manoeuvre, max(1.0, begin + AFTER), {}, begin, given, told)
 
 
-def count(t: np.ndarray) -> np.ndarray:
-    """Of the frames that motor control has sent, one in each sample of the controller."""
-    return 1.0 + np.floor(t / T_S + 0.5)
-
-
-def with_counted_frames() -> Iterator[Run]:
-    for what, told in (("frame", NOTHING_TOLD), ("counted frame", {COUNTED: count})):
-        for late in (0.01, 0.02, 0.022, 0.03, 0.04, 0.052, 0.07, 0.1):
-            yield from with_late_signals(what, FRAME, late, told)
-
-
 def with_wrong_frames() -> Iterator[Run]:
     for late in (0.01, 0.02, 0.03, 0.04, 0.052, 0.062, 0.08, 0.1):
         for what, signal in (("speed", MOTOR_SPEED), ("torque", MOTOR_TORQUE), ("frame", FRAME)):
@@ -213,10 +188,7 @@ def with_wrong_frames() -> Iterator[Run]:
                 yield Run(f"{what}, {frequency:g} Hz", manoeuvre, max(1.0, begin + AFTER), {}, begin, given)
 
 
-TOLD = {"regeneration": with_abs_and_regeneration, "counted": with_counted_frames}
-"""Where it is shown what is gained by what only the car can tell."""
-
-STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames, **TOLD}
+STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames}
 
 
 INJECTORS = {False: SIGNAL_FAULTS, True: periodic_errors.FMU}
@@ -283,7 +255,7 @@ CONTROLLERS = (OURS, *(name for name in COMPARATORS if name != "NoDamping"))
 
 def controllers_table(found: Mapping[tuple[str, str], Sequence[Ratios]]) -> Table:
     """Every controller on roads without grip and under ABS."""
-    rows = {f"{study}, {name}": numbers(of) for (study, name), of in found.items() if study in ("grip", "abs")}
+    rows = {f"{study}, {name}": numbers(of) for (study, name), of in found.items() if study != "frames"}
     return Table("runs, controller", (*NUMBERS, *OVER), rows)
 
 
@@ -311,7 +283,7 @@ def runs_table(runs: Sequence[Run], found: Sequence[Ratios]) -> Table:
 
 def sentinels() -> list[Run]:
     """One run of each kind."""
-    return [next(iter(made())) for study, made in STUDIES.items() if study not in TOLD]
+    return [next(iter(made())) for made in STUDIES.values()]
 
 
 def measure() -> Measured:
@@ -319,7 +291,6 @@ def measure() -> Measured:
     found = {
         (study, controller): measured(runs[study], controller, f"{controller}, {study}")
         for study, controller in product(STUDIES, CONTROLLERS)
-        if study not in TOLD or controller == OURS
     }
     slippery = [*runs["grip"], *runs["abs"]]
     return Measured(
@@ -327,8 +298,6 @@ def measure() -> Measured:
             "controllers": controllers_table(found),
             "groups": groups_table(slippery, [*found["grip", OURS], *found["abs", OURS]]),
             "frames": frames_table(runs["frames"], {name: found["frames", name] for name in CONTROLLERS}),
-            "regeneration": groups_table(runs["regeneration"], found["regeneration", OURS]),
-            "counted": frames_table(runs["counted"], {OURS: found["counted", OURS]}),
             "runs": runs_table(slippery, [*found["grip", OURS], *found["abs", OURS]])._replace(note="With ours."),
             "late": runs_table(sentinels()[2:], measured(sentinels()[2:], OURS, "frames")),
         }
