@@ -35,7 +35,7 @@ WORDS = {
     "estimate": "est estimate estimated hat",
     "received": "can bus rx received",
     "valid": "valid ok flag validity",
-    "counter": "counter cnt alive",
+    "counter": "counter cnt",
     "enable": "enable enabled on active activate",
     "seed": "seed",
 }
