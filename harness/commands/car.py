@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, Any
 from ..base.errors import DrivelineError
 from .analyse import finite
 from .arguments import option, positional
-from .lacking import lacking
 from .options import Replacing, file, file_of, record
 from .printing import JsonPrinting, write_toml
 
@@ -48,6 +47,7 @@ def run(args: Arguments) -> int:
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
     from ..design.design import design
     from ..design.kalman import DesignError
+    from ..design.unknowns import unknowns
     from ..studies.margins.car_properties import announce, car_properties
 
     values = read_vehicle(args.vehicle) if args.vehicle else {}
@@ -58,7 +58,7 @@ def run(args: Arguments) -> int:
     except DesignError as reason:
         gains, origin = None, f"no gains: {' '.join(str(reason).splitlines())}"
     found = car_properties(values, gains)
-    unknown = lacking(values) if args.vehicle and gains else ()
+    unknown = unknowns(values) if args.vehicle and gains else []
     if not args.silent:
         announce(entries, found, unknown, str(args.vehicle or "the default car"), origin, args.all)
     plants = [_of_plant(plant) for plant in found.plants]

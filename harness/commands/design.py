@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING
 from ..base.errors import DrivelineError
 from ..loop.places import PLANTS
 from .design_search import Search, require_search, run_search
-from .lacking import lacking_line
 from .options import file_of, record
 from .printing import write_toml
 
@@ -48,8 +47,10 @@ def run(args: Arguments) -> int:
             raise DrivelineError("--parameters has limits for computed gains: leave it out, or --search")
         return run_search(args, args.search)
     require_search(args)
+    from ..design.unknowns import told
+
     text = designed(args.vehicle, limits=args.parameters, character=args.character)
-    lacks = lacking_line(args.vehicle)
+    lacks = told(args.vehicle)
     if args.output is None and not args.silent:
         print(text.rstrip())
     elif args.output is not None:

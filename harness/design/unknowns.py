@@ -1,13 +1,16 @@
 """What a vehicle file does not have of what decides how good the damping is, and what each is worth: how much worse a
 car is damped that has half or twice of it, by a controller that does not know, than by one that does."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from math import inf, isnan
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...fmus.building.car_entries import Entry, car_entries
 from ...fmus.building.estimates import DECIDE
 from ...fmus.building.one_car import INSTEAD, SHAFTS, with_estimates
+from ...fmus.building.parameter_files import read_vehicle
+from ..loop.built_fmus import built
 from ..loop.places import PLANTS
 from ..loop.settings import Settings
 from .design import design
@@ -55,20 +58,20 @@ def unknowns(entries: Mapping[str, Any], settings: Settings | None = None) -> li
     """What of DECIDE a vehicle file does not have, with what each is worth; most of it first.
 
     Args:
-        settings: of the runs beside plant and parameters.
+        settings: of the runs beside plant and parameters; None: FMUs are built where they are missing.
 
     Raises:
         DesignError: there is no controller for this car.
     """
-    car = with_estimates(entries)
+    if not (lacking := not_given(entries)):
+        return []
+    car, made = with_estimates(entries), settings or built(PLANT)
     assumed = {**car, **design(car)}
-    found = [Unknown(each, *_worth(car, each, assumed, settings)) for each in not_given(entries)]
+    found = [Unknown(each, *_worth(car, each, assumed, made)) for each in lacking]
     return sorted(found, key=lambda each: (each.settling, each.overshoot), reverse=True)
 
 
-def _worth(
-    car: Mapping[str, Any], entry: Entry, assumed: Mapping[str, Any], settings: Settings | None
-) -> tuple[float, float]:
+def _worth(car: Mapping[str, Any], entry: Entry, assumed: Mapping[str, Any], settings: Settings) -> tuple[float, float]:
     """Settling time in s and overshoot (1) that are lost at most."""
     lost = (0.0, 0.0)
     for factor in OFF:
@@ -83,10 +86,15 @@ def _worth(
     return lost
 
 
-def told(found: Sequence[Unknown], name: str) -> str:
-    """What a vehicle file of some name does not have, and what it is worth, in one line; "" where it has all."""
+def told(vehicle: Path | None) -> str:
+    """What a vehicle file does not have, and what it is worth, in one line; "" where there is none, or it has all.
+
+    Raises:
+        DesignError: there is no controller for this car.
+    """
+    found = unknowns(read_vehicle(vehicle)) if vehicle else []
     each = (
         f"{of.entry.name} = {of.entry.value:.3g} {of.entry.unit} ({of.entry.origin}) {of.cells[0]} ms, {of.cells[1]} %"
         for of in found
     )
-    return f"not in {name}, and {COSTS}: {'; '.join(each)}" if found else ""
+    return f"not in {vehicle.name}, and {COSTS}: {'; '.join(each)}" if vehicle and found else ""
