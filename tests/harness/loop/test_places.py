@@ -1,7 +1,6 @@
 """Every block of the loop can be another one; what it need not have, it may lack."""
 
 import logging
-import re
 from dataclasses import replace
 from typing import Any
 
@@ -18,7 +17,6 @@ from driveline.harness.loop.places import CONNECTIONS, NO_DAMPING, OFFERED, OPTI
 from driveline.harness.loop.settings import chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, simulate, start
-from tests import ROOT
 from tests.foreign import RELAY, build_relay, tampered
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=1.2)
@@ -116,18 +114,3 @@ def test_what_is_not_optional_must_be_there_and_a_seed_need_not(built, relay, bo
     assert results["motor.T_mot"][-1] > 50.0
     with pytest.raises(WiringError, match="no parameter sed; did you mean seed"):
         simulate(SHORT, folder=both_built, motor=both_built / "MotorTorqueLoop.fmu", parameters={"motor.sed": 1})
-
-
-def test_the_page_says_what_each_place_needs():
-    page = (ROOT / "docs" / "simulate.md").read_text(encoding="utf-8")
-    table = page.partition("| place |")[2].partition("\n\n")[0]
-    rows = [line.split("|")[1:-1] for line in table.splitlines() if line.startswith("| `")]
-    documented = {}
-    for place, *cells in rows:
-        for causality, cell in zip(("input", "output", "parameter"), cells, strict=True):
-            needed, _, optional = cell.partition("(")
-            for text, may_lack in ((needed, False), (optional, True)):
-                for name, unit in re.findall(r"`(\w+)` ?([\w./]*)", text):
-                    documented[f"{place.strip(' `')}.{name}"] = causality, unit or None, may_lack
-    ports = [(causality, port) for causality, ports in loop().ports.items() for port in ports]
-    assert documented == {port.name: (causality, port.unit, port.name in OPTIONAL) for causality, port in ports}
