@@ -69,7 +69,7 @@ def recorded(
     made = settings_of(settings, plant=plant, control=False, parameters=loop_parameters(car, plant), seed=seed)
     signals = simulate(MANOEUVRES[step], made)[::2]
     time, T_mot, omega_1 = (np.array(signals[name]) for name in ("time", "motor.T_mot_est", "motor.omega_1_meas"))
-    return Measurement(step, time, T_mot, omega_1, omega_1, None, None, None, None, {}, (), (), {})
+    return Measurement(step, time, T_mot, omega_1, omega_1, None, None, None, None, {}, (), {})
 
 
 def found(case: tuple[int, str]) -> Found:

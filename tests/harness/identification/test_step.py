@@ -23,7 +23,7 @@ def recording(
     noise = np.random.default_rng(1).standard_normal((2, len(time)))
     T_mot = before + height * np.clip((time - at) / max(rise, 1e-9), 0.0, 1.0) + 0.3 * noise[0]
     omega_1 = 120.0 + 0.15 * noise[1]
-    return Measurement("own", time, T_mot, omega_1, omega_1, None, None, None, None, {}, (), (), {})
+    return Measurement("own", time, T_mot, omega_1, omega_1, None, None, None, None, {}, (), {})
 
 
 @pytest.mark.parametrize("rise", [0.0, 0.15])
