@@ -28,8 +28,7 @@ LASTS = "lasts"
 LONG = {"DampingController": 604_800, "MotorTorqueLoop": 604_800}
 LONG_ELSE, LONG_IN_PYTHON = 3600, 10
 """How long, in s: native FMUs of these names, others, and those that run Python. Each takes a quarter of a minute of a
-processor at most; a week would be 1 minute for the bus, 3 and
-10 for the plants."""
+processor at most; a week would be 1 minute for the bus, 3 and 10 for the plants."""
 
 HOSTS = (
     LegalHost("sets inputs before initialization mode", ("inputs=before",)),
@@ -52,8 +51,6 @@ HOSTS = (
     LegalHost("saves the state as bytes every .21 s, and goes on in another instance", ("restore=1",)),
     LegalHost("saves and goes on elsewhere in steps of .7 ms", ("restore=1", "step=0.0007")),
     LegalHost("runs five instances at a time, in threads", ("threads=1",)),
-    LegalHost(
-        "has it in a read-only folder with spaces and umlauts (with Python: spaces)", (), PLAIN, "in an odd folder"
-    ),
+    LegalHost("has it in a read-only folder with spaces and umlauts", (), PLAIN, "in an odd folder"),
     LegalHost("gives no folder of resources (native FMUs)", (), PLAIN, "nowhere"),
 )

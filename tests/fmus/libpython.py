@@ -15,4 +15,4 @@ def with_libpython() -> dict[str, str]:
     found = next((each for each in places if ".so" in name and each.is_file()), None)
     if found is None or not sys.platform.startswith("linux"):
         pytest.skip("LD_PRELOAD loads libpython on Linux alone, where this Python has it as a library")
-    return {"LD_PRELOAD": str(found), "PYTHONHOME": sys.base_prefix}
+    return {"LD_PRELOAD": str(found), "PYTHONHOME": sys.base_prefix, "LC_ALL": "C.UTF-8"}
