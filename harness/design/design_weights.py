@@ -79,7 +79,7 @@ class Weights:
     message_error: float = 0.4698217
     damping_ratio: float = 0.5036608
     phase: float = 0.31
-    look_ahead: float = 1.023428
+    look_ahead: float = 0.4093712
     k_gap: float = 0.97
     washout: float = 0.06442173
     shape_1: float = 0.57
