@@ -29,7 +29,7 @@ from ..errors import ParameterFileError
 from .estimates import LAWS, estimated
 
 if TYPE_CHECKING:
-    from .oscillation import Oscillation
+    from .oscillation import Mode
 
 SHAFTS = ("k_s", "k_g", "k_p")
 """What is elastic between motor and wheels in the validation vehicle: half shafts, gear stage, mounts."""
@@ -271,7 +271,7 @@ def _frequency(plant: ContinuousBlock, car: Mapping[str, float]) -> float:
     return _oscillation(plant, car).frequency
 
 
-def _oscillation(plant: ContinuousBlock, car: Mapping[str, float]) -> "Oscillation":
+def _oscillation(plant: ContinuousBlock, car: Mapping[str, float]) -> "Mode":
     from .oscillation import oscillation  # numerics, which only a car that is not the default one needs
 
     fields = plant.Parameters._fields

@@ -20,14 +20,19 @@ STEP = 1e-6
 """By which each state is moved to either side, in its unit: less than the teeth are pressed together."""
 
 
-class Oscillation(NamedTuple):
-    """Frequency in Hz and damping ratio."""
+class Mode(NamedTuple):
+    """A pole: frequency in Hz, damping ratio (1 if it does not swing, negative if it grows)."""
 
     frequency: float
     damping_ratio: float
 
 
-def oscillation(plant: ContinuousBlock, p: Any) -> Oscillation:
+def mode(s: complex) -> Mode:
+    """That of a pole in 1/s."""
+    return Mode(float(abs(s)) / (2.0 * pi), float(-s.real / abs(s)))
+
+
+def oscillation(plant: ContinuousBlock, p: Any) -> Mode:
     """The mode of the plant alone in which a torque of the motor shows most in its speed, rolling on a level road.
 
     Args:
@@ -50,8 +55,7 @@ def oscillation(plant: ContinuousBlock, p: Any) -> Oscillation:
     poles, vectors = np.linalg.eig(A[np.ix_(acts, acts)])
     speed = list(np.flatnonzero(acts)).index(start._fields.index("omega_1"))
     shown = vectors[speed] * np.linalg.solve(vectors, B[acts])
-    s = poles[np.argmax(np.where(np.imag(poles) > 0.0, abs(shown), -1.0))]
-    return Oscillation(float(abs(s)) / (2.0 * pi), float(-s.real / abs(s)))
+    return mode(poles[np.argmax(np.where(np.imag(poles) > 0.0, abs(shown), -1.0))])
 
 
 def rolling_torque(p: Any) -> float:

@@ -47,10 +47,10 @@ def run(args: Arguments) -> int:
             raise DrivelineError("--parameters has limits for computed gains: leave it out, or --search")
         return run_search(args, args.search)
     require_search(args)
-    from ..design.unknowns import told
+    from ..design.unknowns import unknowns_line
 
     text = designed(args.vehicle, limits=args.parameters, character=args.character)
-    lacks = told(args.vehicle)
+    lacks = unknowns_line(args.vehicle)
     if args.output is None and not args.silent:
         print(text.rstrip())
     elif args.output is not None:

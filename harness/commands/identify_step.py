@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ..identification.step import Step
     from ..recordings.measurement import Measurement
 
-UNITS = {"C": "N.m/rad", "phi_B": "rad"}
-
 WIDEST = 0.5
 """Half of a 95 % interval, in the logarithm, up to which a parameter is one of a vehicle file."""
 
@@ -58,8 +56,10 @@ def run_step(args: Any, recording: "Measurement", vehicle: Mapping[str, Any], ou
 
 def _lines(found: "Step") -> list[str]:
     """What was found, for people."""
+    from ..identification.priors import PRIORS
+
     told = [
-        f"{name} = {value:.4g} {UNITS[name]}, 95 %: {value * exp(-found.halves[name]):.3g} to "
+        f"{name} = {value:.4g} {PRIORS[name].unit}, 95 %: {value * exp(-found.halves[name]):.3g} to "
         f"{value * exp(found.halves[name]):.3g}"
         + ("" if found.halves[name] <= WIDEST else "; too wide for a vehicle file")
         for name, value in found.values.items()

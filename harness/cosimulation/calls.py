@@ -196,21 +196,19 @@ def advance(instance: Instance, row: bytearray, step_size: c_double, every: int 
     time, size = c_double.from_buffer(row), step_size
     if every > 1:
         time, size = c_double(), c_double()
-    if instance.interface.fmi == 2:
-        step = partial(instance.function("fmi2DoStep"), instance.component, time, size, c_int(1))
-        call = Call(instance, "fmi2DoStep", step, step_size=step_size)
-        return call if every == 1 else _long(call, time, size, c_double.from_buffer(row), every)
-    do_step = instance.function("fmi3DoStep")
+    function = f"fmi{instance.interface.fmi}DoStep"
+    do_step, component = instance.function(function), instance.component
     event, ended, early, reached = c_bool(), c_bool(), c_bool(), c_double()
     answers = byref(event), byref(ended), byref(early), byref(reached)
-    component, keep = instance.component, c_bool(True)
+    keep = c_bool(True)
 
-    def run() -> int:
+    def run_of_fmi3() -> int:
         status = do_step(component, time, size, keep, *answers)
         instance.slave.ended = ended.value  # type: ignore[union-attr]  # it is one of FMI 3.0
         return fmi2Discard if ended.value and status in (fmi2OK, fmi2Warning) else status
 
-    call = Call(instance, "fmi3DoStep", run, step_size=step_size)
+    run = partial(do_step, component, time, size, c_int(1)) if instance.interface.fmi == 2 else run_of_fmi3
+    call = Call(instance, function, run, step_size=step_size)
     return call if every == 1 else _long(call, time, size, c_double.from_buffer(row), every)
 
 

@@ -294,7 +294,7 @@ def _multiple(own: float, step_size: float) -> int:
 
 def _check(call: Call, status: int) -> None:
     """Raises the error of a status before the first step."""
-    if status == NOT_FINITE or status not in (fmi2OK, fmi2Warning):
+    if status not in (fmi2OK, fmi2Warning):
         raise _failure(call, status)
 
 

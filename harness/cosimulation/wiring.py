@@ -59,8 +59,8 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
     problems = list(mapping.apply(system, interfaces))
     absent = {name: value for name, value in system.optional.items() if _is_absent(name, interfaces)}
     made = [each for each in system.offered if not any(_is_absent(end, interfaces) for end in each[:2])]
-    system = replace(system.without(absent), connections=(*system.without(absent).connections, *made))
-    found = Fit(system, interfaces, absent)
+    there = system.without(absent)
+    found = Fit(replace(there, connections=(*there.connections, *made)), interfaces, absent)
     problems += _duplicates(interfaces)
     require([*problems, *_misfits(found.system, interfaces), *unknown(found, inputs, parameters)])
     return found

@@ -23,7 +23,6 @@ OFF = (0.5, 2.0)
 MANOEUVRE, PLANT = "tipin15", PLANTS[0]
 """In which it is measured."""
 
-
 COSTS = f"what half or twice of it costs in settling and overshoot ({MANOEUVRE}, {PLANT})"
 """What the numbers are."""
 
@@ -86,7 +85,7 @@ def _worth(car: Mapping[str, Any], entry: Entry, assumed: Mapping[str, Any], set
     return lost
 
 
-def told(vehicle: Path | None) -> str:
+def unknowns_line(vehicle: Path | None) -> str:
     """What a vehicle file does not have, and what it is worth, in one line; "" where there is none, or it has all.
 
     Raises:

@@ -49,7 +49,7 @@ ROUNDS, BETTER = 4, 1.0
 """Searches at most, each from the end of the one before, and gain in likelihood for another one: a deviation is .5.
 Where all lacks have come to half of NARROW there is no valley to leave."""
 
-DOUBT = 3.0
+LESS_TRUST = 3.0
 """Times what the model lacks in a second estimate, where the model does not explain the car: phi_B of the small car in
 examples/cars is 10 % off there, and the two are 7 % apart."""
 
@@ -154,7 +154,7 @@ def identify(
     measured = drive.T_load is not None
     log("judging it by data that were not used")
     quality = judged(predictor, found)
-    second = doubted(predictor, found) if lacking(found) else found.p
+    second = second_estimate(predictor, found) if lacking(found) else found.p
     both, apart = found.confirmed(second)
     at = drive.longest
     valid, omega_2 = recording.valid, found.predicted.states[at.start : at.stop - 1, 1]
@@ -211,9 +211,9 @@ def fit(predictor: Predictor, start: Parameters, more: Sequence[str] = (), log: 
     return best
 
 
-def doubted(predictor: Predictor, found: Found) -> Parameters:
-    """What a filter finds that trusts the model DOUBT times less."""
-    lacks = {name: DOUBT * getattr(found.p, name) for name in NARROW}
+def second_estimate(predictor: Predictor, found: Found) -> Parameters:
+    """What a filter finds that trusts the model LESS_TRUST times less."""
+    lacks = {name: LESS_TRUST * getattr(found.p, name) for name in NARROW}
     free = [name for name in found.free if name not in lacks]
     return search(predictor, found.p._replace(**lacks), free, found.centre, most=8).p
 

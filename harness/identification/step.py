@@ -94,7 +94,7 @@ class Tip(NamedTuple):
         T_mot: in N.m, in the middle of the steps that begin there.
         at: instants of the samples of the motor speed.
         omega_1: in rad/s.
-        T_0, v_0: torque in N.m and motor speed in rad/s at the beginning.
+        T_0, omega_0: torque in N.m and motor speed in rad/s at the beginning.
         reversal: whether the torque changes its sign.
     """
 
@@ -180,8 +180,7 @@ def identify_step(recording: Measurement, vehicle: Mapping[str, Any], settings: 
 
 
 def _fitted(plant: str, step: Tip, noise: float, vehicle: Mapping[str, Any], settings: Settings) -> Step:
-    system, known = _plant(settings.replace(plant=plant)), {**with_estimates(vehicle)}
-    known.pop("frequency", None)
+    system, known = _plant(settings.replace(plant=plant)), with_estimates(vehicle)
     names = [name for name in SEARCHED if name != "damping" or plant != PLANTS[0]]
     names = [name for name in names if name != "phi_B" or step.reversal]
     spread = np.array([SEARCHED[name].known for name in names])

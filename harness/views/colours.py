@@ -1,4 +1,4 @@
-"""The colours of Okabe and Ito, which the colour-blind can tell apart."""
+"""The colours of Okabe and Ito, and an olive of Paul Tol: the colour-blind can tell them apart."""
 
 BLACK, BLUE, VERMILION, GREEN, GREY = "black", "#0072B2", "#D55E00", "#009E73", "#999999"
 ORANGE, PURPLE, SKY, OLIVE = "#E69F00", "#CC79A7", "#56B4E9", "#999933"

@@ -10,7 +10,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from ...views.colours import BLACK, BLUE, GREY, VERMILION
+from ...views.colours import BLACK, BLUE, GREY, PURPLE, VERMILION
 from ...views.figure_style import sheet
 from .parameter_search import Evaluated, best, front
 from .search_space import Space
@@ -19,7 +19,7 @@ COLORS_OF_LINES, DASHES = 6, ("-", "--", ":")
 """Lines of different parameters."""
 
 CHOICES = np.linspace(0.0, 1.0, 41)
-COLORS = LinearSegmentedColormap.from_list("character", (VERMILION, "#CC79A7", BLUE))
+COLORS = LinearSegmentedColormap.from_list("character", (VERMILION, PURPLE, BLUE))
 MARGIN = 0.25
 """What the axes show beyond the choices, on each side, over their extent."""
 

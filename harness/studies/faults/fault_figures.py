@@ -10,7 +10,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from ....models.controller.causes import OUTPUT
-from ...views.colours import BLACK, BLUE, GREY, VERMILION
+from ...views.colours import BLACK, BLUE, GREY, ORANGE, VERMILION
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import in_cell, matrix_axes, plot, sheet
 from ...views.panels import Axis, Curve, Panel, Spans
@@ -19,7 +19,7 @@ from .fault_cases import Case, Plan
 from .fault_injection import Runs
 from .judges import JUDGES
 
-SHARES = LinearSegmentedColormap.from_list("shares", ("#DDEEF8", "#E69F00", "#D55E00"))
+SHARES = LinearSegmentedColormap.from_list("shares", ("#DDEEF8", ORANGE, VERMILION))
 """From all clean to none; a cell without cases stays white."""
 
 STATUS = {1.0: "off", 2.0: "wheel", 3.0: "no wheel", 4.0: "fallback"}

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...base.plain_text import printed
-from ...views.colours import COLOURS
+from ...views.colours import COLOURS, ORANGE, VERMILION
 from ...views.page.figures import Figure, figure
 from ...views.page.report import Heading, Row, Section, Table, write_report
 from ...views.page.thinning import thinned
@@ -24,7 +24,7 @@ WORST = 6
 SHARES = np.linspace(0.0, 100.0, 401)
 """In %, of the cases, at which the distributions are drawn."""
 
-PALETTE = ("#DDEEF8", "#F0DFB9", "#E8C070", "#E69F00", "#DE7D00", "#D55E00")
+PALETTE = ("#DDEEF8", "#F0DFB9", "#E8C070", ORANGE, "#DE7D00", VERMILION)
 """From all clean to none."""
 
 

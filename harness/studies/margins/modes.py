@@ -1,22 +1,11 @@
 """The poles of a sampled system as modes, and those of a drive train without and with damping."""
 
-from math import pi
-from typing import NamedTuple
-
 import numpy as np
 
-from ....fmus.building.oscillation import oscillation
+from ....fmus.building.oscillation import Mode, mode, oscillation
 from ....models.controller import T_S
 from .linear_loop import LinearLoop
 from .operating_point import Point
-
-
-class Mode(NamedTuple):
-    """A pole: frequency in Hz, damping ratio (1 if it does not swing, negative if it grows)."""
-
-    frequency: float
-    damping_ratio: float
-
 
 ABOUT = (0.5, 2.0)
 """Frequencies of the drive train in a loop, over the one that it has alone, between which its mode is looked for."""
@@ -33,15 +22,15 @@ def is_stable(loop: LinearLoop) -> bool:
 def alone(point: Point) -> Mode:
     """The drive train of a plant without control: the mode in which a torque of the motor shows most in its speed,
     in contact, rolling at 15 km/h."""
-    return Mode(*oscillation(point.plant, point.of("plant", point.plant)))
+    return oscillation(point.plant, point.of("plant", point.plant))
 
 
 def drive_train_mode(loop: LinearLoop, frequency: float) -> Mode:
     """The drive train in a loop (MEANT), with the mean of samples without and with a message; without a mode about the
     frequency (Hz) that it has alone it does not swing."""
     low, high = (factor * frequency for factor in ABOUT)
-    about = (mode for mode in modes(loop.mean) if low < mode.frequency < high)
-    return min(about, key=lambda mode: mode.damping_ratio, default=Mode(frequency, 1.0))
+    about = (each for each in modes(loop.mean) if low < each.frequency < high)
+    return min(about, key=lambda each: each.damping_ratio, default=Mode(frequency, 1.0))
 
 
 def modes(loop: LinearLoop, gain: float = 1.0) -> list[Mode]:
@@ -49,7 +38,7 @@ def modes(loop: LinearLoop, gain: float = 1.0) -> list[Mode]:
 
     Over a cycle of more than one sample frequencies are known but for multiples of that of the cycle.
     """
-    return [Mode(float(abs(s)) / (2.0 * pi), float(-s.real / abs(s))) for s in swinging_poles(loop, gain)]
+    return [mode(s) for s in swinging_poles(loop, gain)]
 
 
 def swinging_poles(loop: LinearLoop, gain: float = 1.0) -> np.ndarray:
