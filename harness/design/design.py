@@ -147,7 +147,8 @@ def largest_landing(plant: Plant, motor: Motor, weights: Weights) -> float:
     4 T_gap C phi_B = T_peak^2.
     """
     T_peak = weights.impact * motor.T_max
-    return min(weights.landing * motor.T_max, T_peak**2 / (4.0 * plant.C * plant.phi_B))
+    bearable = T_peak**2 / (4.0 * plant.C * plant.phi_B) if plant.phi_B else inf
+    return min(weights.landing * motor.T_max, bearable)
 
 
 def authority(plant: Plant, motor: Motor, weights: Weights) -> dict[str, float]:
