@@ -1,4 +1,5 @@
-"""The true loop, in contact and without noise: the models themselves, stepped, after a small step of the demand."""
+"""The true loop, in contact and without noise: the models themselves, stepped, after a small step of the demand,
+which the controller does not shape."""
 
 from collections import deque
 from collections.abc import Mapping
@@ -28,8 +29,9 @@ def torque(point: Point, step: float = 0.1, gain: float = 1.0, duration: float =
         gain: factor on what the controller adds.
         duration: in s.
     """
+    unshaped = {name: 0.0 for name in ("shape_1", "shape_2") if name in point.controller.Parameters._fields}
     given = point.with_parameters(
-        motor=NOISELESS, can=EVEN, plant={"v_0": point.v, "T_0": point.T}, controller={"swing": 1.0}
+        motor=NOISELESS, can=EVEN, plant={"v_0": point.v, "T_0": point.T}, controller={"swing": 1.0, **unshaped}
     )
     block, p = motor_and_plant(point.plant), (given.of("motor", MOTOR), given.of("plant", point.plant))
     demand = {"T_driver": point.T}

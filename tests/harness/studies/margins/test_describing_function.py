@@ -105,6 +105,6 @@ def test_where_contact_is_no_longer_stable_a_swing_through_the_gap_still_dies_aw
     through_the_gap = margins(Swinging(replace(point, late=0.0)).loop(describing_function(1.5)))
     assert in_contact.delay_margin < point.late < through_the_gap.delay_margin
     assert growth(replace(point, T=40.0), in_contact.delay_frequency) > 1.0
-    swing = torque(replace(point, T=10.0), step=-10.0, duration=1.2)
-    first, last = swing[: round(0.25 / INTERVAL)], swing[round(0.95 / INTERVAL) :]
+    swing = torque(replace(point, T=10.0), step=-10.0, duration=1.6)
+    first, last = swing[: round(0.25 / INTERVAL)], swing[round(1.3 / INTERVAL) :]
     assert np.ptp(last) < 0.1 * np.ptp(first)
