@@ -43,10 +43,12 @@ def by_name(blocks: Iterable[str], kind: str) -> dict[str, str]:
     """Blocks (names or files), each once, by the names that tables and files give them; `kind` says what they are.
 
     Raises:
-        DrivelineError: two have the same name.
+        DrivelineError: two have the same name, or a controller that of the run without damping.
     """
     named: dict[str, str] = {}
     for block in blocks:
         if named.setdefault(Path(block).stem, block) != block:
             raise DrivelineError(f"two {kind}s are called {Path(block).stem}; rename the file of one")
+    if kind == "controller" and "off" in named:
+        raise DrivelineError(f"the run without damping is called off, not a controller; rename the file {named['off']}")
     return named

@@ -44,6 +44,8 @@ def test_plants_and_manoeuvres_of_the_same_name_are_refused():
         cases(["A", "folder/A.fmu"], ["drive"], ["B"])
     with pytest.raises(DrivelineError, match="two controllers are called B"):
         cases(["A"], ["drive"], ["B", "folder/B.fmu"])
+    with pytest.raises(DrivelineError, match=r"without damping is called off, .* rename the file off\.fmu"):
+        cases(["off"], ["drive"], ["B", "off.fmu"])
     with pytest.raises(DrivelineError, match="there is no controller to compare"):
         cases(["A"], ["drive"], [])
     slow, fast = (driveline.composed("tip", duration=1.0, T_driver=torque) for torque in (1.0, 2.0))
