@@ -114,7 +114,8 @@ def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, 
         try:
             followed = followed | _detailed(frozenset({**given, **followed}.items()))
         except ParameterFileError as problem:
-            guessed = [name for name in followed if name in LAWS]
+            measured = {name for each in INSTEAD if each in given for name in INSTEAD[each]}
+            guessed = [name for name in followed if name in LAWS and name not in measured]
             raise ParameterFileError(f"{problem}{'; not given: ' if guessed else ''}{', '.join(guessed)}") from problem
     return {**{name: value for name, value in entries.items() if name not in MEASURED}, **followed}
 

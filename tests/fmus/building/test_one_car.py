@@ -180,6 +180,8 @@ def test_a_car_by_its_data_sheet_is_estimated_through_the_default_car() -> None:
     assert "F_z0" not in of_one_car({"m": 19200.0}, ())
     assert of_one_car({"T_max": 1.0}, ())["J_1"] == 0.001, "no less than a block takes"
     assert refusal(T_max=1.0).endswith("; not given: J_1, C")
+    measured = refusal(T_max=310.0, frequency=7.2, damping_ratio=0.03, gap=0.04)
+    assert measured.endswith("; not given: J_1"), "what was measured is not asked for"
     assert "C" not in followed(T_max=360.0, k_s=25800.0, k_g=120000.0, k_p=70000.0, J_1=0.055), "which has its shafts"
 
 
