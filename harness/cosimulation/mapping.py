@@ -18,7 +18,7 @@ from ...fmus.unit_conversion import SI, factor
 from ..base.collected_warnings import warn_once
 from ..base.errors import WiringError
 from ..base.known_names import nearest
-from ..base.plain_text import words
+from ..base.plain_text import reason
 from .interface import Interface, unit_of
 from .system import System
 
@@ -55,8 +55,8 @@ def read(path: Path) -> dict[str, str]:
     """
     try:
         entries = toml_entries(path)
-    except (OSError, ValueError) as reason:
-        raise WiringError(f"{path}: {words(reason)}") from reason
+    except (OSError, ValueError) as error:
+        raise WiringError(f"{path}: {reason(error)}") from error
     found: dict[str, str] = {}
     for place, names in entries.items():
         if not isinstance(names, dict):

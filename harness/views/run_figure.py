@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..base.argument_kinds import require_each
-from ..base.errors import DrivelineError
+from ..base.errors import DrivelineError, WiringError
 from ..base.plain_text import printed
 from ..cosimulation.results import Results
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -76,6 +76,8 @@ def plot(
     """
     runs: dict[str, Any] = dict(results) if isinstance(results, Mapping) else {"": results}
     require_each("results", list(runs.values()), np.ndarray, "results of runs, as simulate gives them")
+    if not runs:
+        raise WiringError("results = {}: there must be a run to show")
     shown = require_each("names", names, str, "names of signals, such as plant.T_gear")
     path = Path("run" if file is None else file)
     kind = path.suffix.lower().removeprefix(".")

@@ -69,8 +69,8 @@ def test_a_draft_is_what_runs_take(theirs: Path, native: Path, tmp_path: Path, c
     [
         ("T_gear = 'a'", r"T_gear = 'a'; it must be a table such as \[plant\]"),
         ("[plant]\nT_gear = 3", r"plant\.T_gear = 3; it must be a name of the FMU in quotes"),
-        ("[plant", "not TOML"),
-        (None, "there is no such file"),
+        ("[plant", "toml: not TOML"),
+        (None, "toml: there is no such file"),
     ],
 )
 def test_a_file_that_is_no_mapping_is_refused(tmp_path: Path, text: str | None, complaint: str) -> None:

@@ -407,6 +407,11 @@ def test_what_cannot_be_shown_is_said(given: Any, message: str) -> None:
         Results(STEPS[1], {}).plot(**given)
 
 
+def test_no_run_cannot_be_shown() -> None:
+    with pytest.raises(driveline.DrivelineError, match=r"results = \{\}: there must be a run to show"):
+        driveline.plot({})
+
+
 @pytest.mark.parametrize(
     ("unit", "text"), [("N.m", "N·m"), ("m/s3", "m/s³"), ("(N.m)^5", "(N·m)⁵"), ("1/min", "1/min"), ("kg.m2", "kg·m²")]
 )
