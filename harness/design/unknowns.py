@@ -10,6 +10,7 @@ from ...fmus.building.car_entries import Entry, car_entries
 from ...fmus.building.estimates import DECIDE
 from ...fmus.building.one_car import INSTEAD, SHAFTS, with_estimates
 from ...fmus.building.parameter_files import read_vehicle
+from ..base.plain_text import printed
 from ..loop.built_fmus import built
 from ..loop.places import PLANTS
 from ..loop.settings import Settings
@@ -93,7 +94,8 @@ def unknowns_line(vehicle: Path | None) -> str:
     """
     found = unknowns(read_vehicle(vehicle)) if vehicle else []
     each = (
-        f"{of.entry.name} = {of.entry.value:.3g} {of.entry.unit} ({of.entry.origin}) {of.cells[0]} ms, {of.cells[1]} %"
+        f"{of.entry.name} = {of.entry.value:.3g} {printed(of.entry.unit)} ({of.entry.origin}) "
+        f"{of.cells[0]} ms, {of.cells[1]} %"
         for of in found
     )
     return f"not in {vehicle.name}, and {COSTS}: {'; '.join(each)}" if vehicle and found else ""

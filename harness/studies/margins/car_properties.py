@@ -12,6 +12,7 @@ from ....fmus.building.car_entries import Entry, car
 from ....fmus.building.estimates import DECIDE
 from ....fmus.building.one_car import MEASURED
 from ....models.damping_controller import BLOCK
+from ...base.plain_text import printed
 from ...design.design_trials import loop_parameters
 from ...design.unknowns import COSTS, Unknown
 from ...loop.places import PLANTS
@@ -115,7 +116,7 @@ def announce(
         blocks = ", ".join(SHORT.get(name, name) for name in each.blocks)
         rest = (blocks, each.meaning) if every else (each.meaning, *worth.get(each.name, ("", "")))
         table.add_row(
-            each.name, value, each.unit, origin, *rest, end_section=bool(after and after.origin != each.origin)
+            each.name, value, printed(each.unit), origin, *rest, end_section=bool(after and after.origin != each.origin)
         )
     print_table(table)
     if not every:
@@ -130,7 +131,7 @@ def announce(
     print(
         f"with control: {MEANT}\n"
         f"backlash at the wheel: {found.gap:.2f} degrees from flank to flank\n"
-        f"authority: the control takes up to {found.taken:g} N.m from the demand and adds up to {found.added:g} N.m, "
-        f"of T_max = {found.T_max:g} N.m\n"
-        f"at the wheels: {found.wheel_torque:.4g} N.m by all of the motor, which is {found.acceleration:.2f} m/s2"
+        f"authority: the control takes up to {found.taken:g} N·m from the demand and adds up to {found.added:g} N·m, "
+        f"of T_max = {found.T_max:g} N·m\n"
+        f"at the wheels: {found.wheel_torque:.4g} N·m by all of the motor, which is {found.acceleration:.2f} m/s²"
     )

@@ -182,11 +182,11 @@ def test_the_table_has_each_entry_and_what_comes_of_them(capsys: Capsys) -> None
     assert main(["car", str(VAN), "--all"]) == 0
     text = capsys.readouterr().out
     rows = {line.split()[0]: line for line in text.splitlines() if line.strip()}
-    assert rows["C"].split()[1:4] == ["150", "N.m/rad", "set"]
-    assert rows["k_s"].split()[1:5] == ["52333.7", "N.m/rad", "follows", "(C)"]
+    assert rows["C"].split()[1:4] == ["150", "N·m/rad", "set"]
+    assert rows["k_s"].split()[1:5] == ["52333.7", "N·m/rad", "follows", "(C)"]
     assert "design plant, vehicle, bus" in rows["i"]
     assert "backlash at the wheel: 3.00 degrees" in text
-    assert "takes up to 188.378 N.m from the demand and adds up to 83.3333 N.m, of T_max = 250 N.m" in text
+    assert "takes up to 188.378 N·m from the demand and adds up to 83.3333 N·m, of T_max = 250 N·m" in text
     assert rows["TwoMassDriveline"].split()[1] == "6.95"
     assert rows["ValidationVehicle"].split()[1] == "7.50"
 
@@ -200,14 +200,14 @@ def test_what_a_data_sheet_lacks_is_said_with_what_it_costs(tmp_path: Path, caps
     screen = capsys.readouterr().out.splitlines()
     assert len(screen) < 44
     rows = {line.split()[0]: line.split() for line in screen if line.strip()}
-    assert rows["J_1"][1:4] == ["0.11", "kg.m2", "set"]
+    assert rows["J_1"][1:4] == ["0.11", "kg·m²", "set"]
     settling, overshoot = map(int, rows["C"][-2:])
     assert 50 < settling < 500
     assert 5 < overshoot < 50
     assert main(["design", "--vehicle", str(sheet), "--output", str(tmp_path / "gains.toml")]) == 0
     line = capsys.readouterr().out.splitlines()[-1]
     assert line.startswith("not in sheet.toml, and what half or twice of it costs in settling and overshoot (tipin15, ")
-    assert f"C = 158 N.m/rad (estimated) {settling} ms, {overshoot} %" in line
+    assert f"C = 158 N·m/rad (estimated) {settling} ms, {overshoot} %" in line
     assert [part.split()[0] for part in line.partition("): ")[2].split("; ")][:2] == ["C", "phi_B"]
     assert "J_1" not in line
 
