@@ -127,8 +127,9 @@ static int load(void)
 EXPORT void *fmi2Instantiate(const char *name, int type, const char *guid, const char *resources,
                              const Callbacks *callbacks, int visible, int logging)
 {
-    char path[LONGEST];
+    char path[LONGEST], attribute[LONGEST];
     const char *what = NULL, *which = resources ? resources : "";
+    snprintf(attribute, sizeof attribute, " guid=\"%.4096s\"", guid ? guid : "");
     if (!path_of(resources, path)) {
         what = "fmuResourceLocation = '%s' is no URI of a file on this machine";
     } else if (!has_text(path, "slavemodule.txt", "", 0)) {
@@ -138,7 +139,7 @@ EXPORT void *fmi2Instantiate(const char *name, int type, const char *guid, const
         which = "fmi2ModelExchange";
     } else if (strchr(path, '%')) {
         what = "fmuResourceLocation = '%s': PythonFMU's binary cannot read a path with a percent sign in it";
-    } else if (!guid || !*guid || !has_text(path, "../modelDescription.xml", guid, 1)) {
+    } else if (!guid || !*guid || !has_text(path, "../modelDescription.xml", attribute, 1)) {
         what = "fmuGUID = '%s' is not the guid of this FMU";
         which = guid ? guid : "";
     } else if (!load()) {

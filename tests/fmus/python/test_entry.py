@@ -68,4 +68,5 @@ def test_another_folder_kind_or_guid_is_refused_with_a_message(instantiate):
         "fmuResourceLocation = 'file:///nowhere' is not the folder of the resources of this FMU"
     )
     assert "is for co-simulation alone" in instantiate("{path}", kind=0)
-    assert instantiate("{path}", guid="another") == "fmuGUID = 'another' is not the guid of this FMU"
+    for guid in ("another", "", "2.0", "-"):  # the last two are in the description, within a version and the guid
+        assert instantiate("{path}", guid=guid) == f"fmuGUID = '{guid}' is not the guid of this FMU"
