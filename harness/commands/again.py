@@ -59,15 +59,22 @@ def _run(before: Mapping[str, Any], folder: Path, name: str) -> int:
     """
     from .cli import parser
 
-    command_line, cwd = str(before["command_line"]), Path(before["folder"])
+    command_line, cwd = before["command_line"], Path(before["folder"])
     program, *words = shlex.split(command_line)
     if program != PROGRAM:
         raise DrivelineError(f"it was made by another program, which can make it again: {plain(command_line)}")
     if not cwd.is_dir():
-        raise DrivelineError(f"it was made in the folder {cwd}, which is not there; its command: {plain(command_line)}")
+        raise DrivelineError(
+            f"it was made in the folder {cwd}, which is not there; its command: `{plain(command_line)}`"
+        )
     with chdir(cwd), redirect_stdout(io.StringIO()):
-        parsed = parser().parse_args(words)
-        given = filled(parsed.found.record, parsed)
+        try:
+            parsed = parser().parse_args(words)
+            given = filled(parsed.found.record, parsed)
+        except SystemExit as stop:
+            if stop.code:  # it has been said what is wrong
+                raise
+            given = None  # it asks for help
         if not isinstance(given, Replacing):  # others build, serve, or run what is no FMU
             raise DrivelineError(f"the command of {name}.json makes no result of runs: {plain(command_line)}")
         return parsed.found.run(replace(given, **_elsewhere(given, folder, name)))

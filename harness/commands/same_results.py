@@ -1,6 +1,7 @@
 """Whether a result that was made again is the same: what made it, and every number in it."""
 
 import json
+import shlex
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,10 @@ def read_record(path: Path) -> Mapping[str, Any]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         complete = isinstance(content["files"], dict) and {*MADE_BY, "command_line", "folder", "fmus"} <= content.keys()
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        if complete:
+            _origin(content)
+            complete = isinstance(content["folder"], str) and bool(shlex.split(content["command_line"] or ""))
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise DrivelineError(f"{path} is no record of a result: {type(error).__name__}") from error
     if not complete:
         raise DrivelineError(f"{path} is no record of a result, or one of an earlier version, that names no digests")

@@ -95,6 +95,12 @@ def test_a_number_that_is_another_one_is_named(made: Path, tmp_path: Path, capsy
     [
         (lambda record: record.pop("versions"), "is no record of a result, or one of an earlier version"),
         (lambda record: record.update(files=["x.csv"]), "is no record of a result, or one of an earlier version"),
+        (lambda record: record.update(folder=7), "is no record of a result, or one of an earlier version"),
+        (lambda record: record.update(command_line=5), "is no record of a result: AttributeError$"),
+        (lambda record: record.update(command_line=""), "is no record of a result, or one of an earlier version"),
+        (lambda record: record.update(command_line="driveline 'x"), "is no record of a result: ValueError$"),
+        (lambda record: record.update(fmus=["x"]), "is no record of a result: AttributeError$"),
+        (lambda record: record.update(command_line="driveline --help"), "makes no result of runs: driveline --help$"),
         (lambda record: record.update(command_line="python mine.py"), "made by another program, .*: python mine.py$"),
         (
             lambda record: record.update(command_line="driveline build x.py"),
