@@ -30,6 +30,9 @@ LAWS: Mapping[str, Mapping[str, float]] = {
 HEAVIEST = 11500.0 * CAR.g
 """In N, of a driven axle (Council Directive 96/53/EC, Annex I, 3.4.1)."""
 
+SHEET = ("m", "r", "i", "T_max")
+"""What a data sheet has of a car."""
+
 DECIDE = (*LAWS, "tau")
 """What decides how good the damping is and stands in no data sheet."""
 

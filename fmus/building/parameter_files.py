@@ -19,6 +19,7 @@ from ..fmu import Fmu
 from ..names import RENAMED, meant
 from ..toml_file import toml_entries
 from ..unit_conversion import quantity
+from .estimates import SHEET
 from .one_car import MEASURED, of_one_car
 
 OF_A_RUN = {
@@ -254,13 +255,14 @@ def _quantity(name: str, text: str, unit: str) -> float:
 
 
 def _nearest(name: str, known: Owners, others: Collection[str]) -> str:
-    """What a name may have been meant to be: what its words describe, else what is written like it."""
+    """What a name may have been meant to be: what its words describe, of a data sheet first, else what is like it."""
     words, places = name.lower().split("_"), dict[str, int]()
     for each, ((_, variable), *_) in known.items():
         described = variable.declaration.description.replace(",", "").split()
         found = [[k for k, of in enumerate(described) if of.startswith(word)] for word in words if len(word) > 2]
         if all(found) and len(found) == len(words):
             places[each] = min(map(min, found))
+    places = {each: at for each, at in places.items() if each in SHEET} or places
     first = [each for each, at in places.items() if at == min(places.values()) and name not in RENAMED]
     near = f"did you mean {' or '.join(first[:3])}?" if first else meant(name, sorted({*known, *others}))
     return f"; {near}" if near else ""

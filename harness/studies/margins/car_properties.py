@@ -9,7 +9,7 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from ....fmus.building.car_entries import Entry, car
-from ....fmus.building.estimates import DECIDE
+from ....fmus.building.estimates import DECIDE, SHEET
 from ....fmus.building.one_car import MEASURED
 from ....models.damping_controller import BLOCK
 from ...base.plain_text import printed
@@ -29,9 +29,6 @@ SHORT = {
     "DampingController": "controller",
 }
 """What stands in the table for the name of an FMU."""
-
-SHEET = ("m", "r", "i", "T_max")
-"""What a data sheet has of a car."""
 
 
 class PlantProperties(NamedTuple):

@@ -79,6 +79,7 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
         ("hat = 3", "hat is not known"),
         ("mass = 1200.0", "mass is not known; did you mean m?"),
         ("wheel_radius = 0.3", "wheel_radius is not known; did you mean r?"),
+        ("torque = 300.0", "torque is not known; did you mean T_max?"),
         ("inertia = 0.3", "inertia is not known; did you mean J_1 or J_2 or J_w?"),
         ("J_1 = '0.09'", "J_1 = '0.09': it must be a number and a unit; a number alone is in kg.m2"),
         ("J_1 = true", "J_1 = True: it must be a finite number"),
