@@ -32,11 +32,16 @@ class Arguments(Printing):
 
 
 def run(args: Arguments) -> int:
+    from ..simulation.provenance import BEGINS_ANEW
     from .same_results import different_numbers, different_origin, numeric, read_record
 
     before, there = read_record(args.made), args.made.absolute()
     with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
-        code = _run(before, Path(folder), args.made.stem)
+        try:
+            code = _run(before, Path(folder), args.made.stem)
+        except KeyboardInterrupt as stop:
+            stop.__notes__ = [BEGINS_ANEW]  # a campaign says that it goes on, but its folder vanishes
+            raise
         found = next(Path(folder).rglob(args.made.name), None)
         if found is None:
             raise DrivelineError(f"{args.made}: its command made no {args.made.name} and ended with exit code {code}")

@@ -10,7 +10,9 @@ from typing import Any
 import pytest
 
 from driveline.harness.base.digest import digest
+from driveline.harness.commands import again
 from driveline.harness.commands.cli import main
+from driveline.harness.simulation.case_archive import GOES_ON
 from tests.harness.commands import Capsys
 
 NAME = "TwoMassDriveline_tipin0_DampingController"
@@ -116,3 +118,14 @@ def test_what_cannot_be_made_again_is_refused(
     assert (code, out) == (2, "")
     (line,) = err.splitlines()
     assert re.search(named, line)
+
+
+def test_one_that_is_stopped_begins_anew(made: Path, capsys: Capsys, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*_: object) -> int:
+        stop = KeyboardInterrupt()
+        stop.add_note(GOES_ON)
+        raise stop
+
+    monkeypatch.setattr(again, "_run", stopped)
+    expected = "driveline again: stopped; nothing of it is left, and the same command begins anew\n"
+    assert answer(capsys, "again", str(made / "results" / f"{NAME}.json")) == (130, "", expected)
