@@ -112,7 +112,8 @@ def _inputs(name: str, made: Path) -> np.ndarray:
 def _completed(inputs: np.ndarray, interface: Interface) -> np.ndarray:
     """With the other inputs, which keep their start values; FMPy warns of an input that it is not given."""
     given = inputs.dtype.names or ()
-    others = {v.name: float(v.start or 0.0) for v in interface.of_causality("input") if v.name not in given}
+    starts = {v.name: v.start or "0" for v in interface.of_causality("input") if v.name not in given}
+    others = {name: float({"false": "0", "true": "1"}.get(start, start)) for name, start in starts.items()}
     completed = np.empty(len(inputs), [*inputs.dtype.descr, *((name, np.float64) for name in others)])
     for name in completed.dtype.names or ():
         completed[name] = others[name] if name in others else inputs[name]

@@ -48,7 +48,7 @@ class Parameters(NamedTuple):
     frozen: Annotated[float, speed("movement beside q_omega without which the motor speed is frozen")] = 0.15
     wheel_deviation: Annotated[float, speed("largest distance of the wheel speed from the motor speed")] = 4.6
     wheel_jump: Annotated[float, speed("largest change between messages that the motor speed does not make")] = 3.0
-    launch_speed: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.45
+    launch_speed: Annotated[float, speed("speed of the free motor that tells the direction of a launch")] = 0.6
     launch_tolerance: Annotated[float, Real("1", "error of a launch against the torque, over it", 0.0, 1.0)] = 0.25
     g_radius: Annotated[float, Real("1", "largest error of the wheel radius", 0.0, 1.0)] = 0.06
     T_off: Annotated[float, Real("1", "largest error of the torque estimate, over T_max", 0.0, 1.0)] = 0.05

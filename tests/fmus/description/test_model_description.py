@@ -233,7 +233,7 @@ def test_the_date_can_be_given_as_for_every_reproducible_build(monkeypatch):
 
 
 def test_a_model_that_branches_on_data_is_caught():
-    with pytest.raises(TypeError, match="must call `where`"):
+    with pytest.raises(TypeError, match="takes such a condition"):
         max(Dependent(), Dependent())
 
 

