@@ -15,7 +15,7 @@ from driveline.harness.simulation.simulate import simulate
 STEPS = (1e-3, 1e-4)
 """Communication steps in s that are compared."""
 
-INSTANTS = ("settling_time", "response_delay")
+INSTANTS = ("crossing_time", "settling_time", "response_delay")
 """Metrics that are the time of a sample."""
 
 

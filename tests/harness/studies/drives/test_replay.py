@@ -192,7 +192,7 @@ def test_what_damping_is_worth_is_the_same_as_on_a_level_road_without_it(setting
             band_rms(on[signal], T_S, derivative=derivative) / band_rms(off[signal], T_S, derivative=derivative)
             for off, on in pairs
         )
-        assert with_it == pytest.approx(without_it, rel=0.07, abs=0.012), "of the swing without control"
+        assert with_it == pytest.approx(without_it, rel=0.08, abs=0.012), "of the swing without control"
 
 
 def test_all_drive_on_the_same_road_and_damping_lowers_oscillation_and_damage(replayed):
