@@ -49,7 +49,7 @@ def test_the_words_of_the_status_are_those_of_the_declaration(module: Any) -> No
     status, cause = module.COMPU_VTAB
     causes = (
         "none speed_range speed_jump speed_frozen torque_implausible wheel_contradicts wrong_direction wrong_launch"
-        " feeds_oscillation"
+        " feeds_oscillation frame_late"
     )
     assert [pair.OutVal.Value for pair in cause.InValOutVal] == causes.split()
     statuses = "off damping_with_wheel_speed damping_without_wheel_speed fallback"
