@@ -101,13 +101,14 @@ def test_what_cannot_be_is_refused_and_what_is_the_same_is_not_run_again(data: d
 
 
 @pytest.mark.parametrize(
-    ("t_return", "sport", "comfort"), [(0.0035, 0.002, 0.007), (0.012, 0.006, 0.0175), (0.03, 0.015, 0.03)]
+    ("t_return", "sport", "comfort"),
+    [(0.0047, 0.00235, 0.0094), (0.003, 0.002, 0.006), (0.012, 0.006, 0.0235), (0.03, 0.015, 0.03)],
 )
 def test_the_character_turns_a_gain_as_far_as_its_slider_goes(
     data: dict[str, Any], tmp_path: Path, t_return: float, sport: float, comfort: float
 ) -> None:
     """From 2 ms, the least that the FMU takes, to five times the value at the start; what is typed beyond stays."""
-    gains = {} if t_return == 0.0035 else {"t_return": t_return}
+    gains = {} if t_return == 0.0047 else {"t_return": t_return}
     answers = asked(tmp_path, data, *({"gains": gains, "character": character} for character in (0.0, 1.0)))["answers"]
     assert [each["gains"]["t_return"] for each in answers] == pytest.approx([sport, comfort])
 
@@ -262,7 +263,7 @@ def test_the_keyboard_reaches_all_in_order_and_turns_a_slider_and_goes_back(open
     pressed(opened, "ARROW_RIGHT")
     once = opened.js("wanted.gains.k_d")
     pressed(opened, "ARROW_RIGHT")
-    assert opened.js("wanted.gains.k_d") - once == pytest.approx(once - 2.55, abs=0.01)
+    assert opened.js("wanted.gains.k_d") - once == pytest.approx(once - 2.58, abs=0.01)
     settled(opened, "history.back()")
     assert opened.js("wanted.gains") == {}
     opened.js("get('knob k_d value').select()")
@@ -309,7 +310,7 @@ def test_a_run_is_held_and_a_manoeuvre_drawn_and_files_are_those_that_commands_t
     assert opened.js(rows) == ["without control", OURS, "held 1"]
     assert opened.js("document.querySelectorAll('#drawn circle').length") == 3
     opened.js("(URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = text }); return '#' })")
-    for what, read, name, value in (("car", read_vehicle, "C", 150.0), ("gains", read_parameters, "k_d", 2.55)):
+    for what, read, name, value in (("car", read_vehicle, "C", 150.0), ("gains", read_parameters, "k_d", 2.58)):
         opened.js("window.saved = undefined")
         opened.js(f"document.getElementById('save {what}').click()")
         opened.until("window.saved")

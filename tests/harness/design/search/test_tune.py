@@ -40,7 +40,7 @@ def test_what_is_known_is_not_run_again_and_the_record_tells_what_the_costs_depe
     searched(evaluation, tmp_path, count=1)
     run = json.loads((tmp_path / RECORD).read_text())["run"]
     assert run["controller"] == "DampingController"
-    assert run["searched"]["k_d"] == [0.3, 2.55, 10.0]
+    assert run["searched"]["k_d"] == [0.3, 2.58, 10.0]
     assert run["computed"]["lambda_v"] == 0.913
     assert run["reference"]["k_gap"] == 0.97
     assert {"TwoMassDriveline", "ValidationVehicle", "DampingController"} <= run["fmus"].keys()

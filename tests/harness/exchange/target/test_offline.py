@@ -107,7 +107,7 @@ def test_flash_ram_and_stack_are_those_of_the_records_and_a_caller(size: Size, b
     assert size.calibration == 4 * len(BLOCK.Parameters._fields)
     assert size.ram < 512
     assert size.stack <= 256
-    assert 4000 < size.flash < 6000 < size.image < 8192
+    assert 4000 < size.flash < 6500 < size.image < 8192
     assert size.library == ("memcpy", "memset")
     assert size.stack <= braked.stack <= size.stack + 32
 
