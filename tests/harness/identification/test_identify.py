@@ -101,7 +101,8 @@ def test_of_a_weak_drive_what_it_does_not_tell_is_named_and_no_cause(amplitude: 
     warnings = identify(driven(amplitude, mean=25.0)).warnings
     assert any("the gap is not crossed and phi_B is not told" in text for text in warnings)
     causes = ("looks", "early", "late")
-    assert [text for text in warnings if any(cause in text for cause in causes)] == []
+    own = [text for text in warnings if not text.startswith("a filter that trusts the model less")]  # it names late_T
+    assert [text for text in own if any(cause in text for cause in causes)] == []
 
 
 def test_an_offset_of_the_load_torque_is_no_error_of_the_prediction() -> None:
