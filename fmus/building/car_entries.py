@@ -1,6 +1,7 @@
 """A car entry by entry: what a vehicle file sets, what follows from it, and what stays as in the default car."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from textwrap import wrap
 from typing import Any, NamedTuple
 
 from ..catalogue import FMUS
@@ -18,6 +19,9 @@ SECTIONS = {
     "Motor and bus": ("tau", "T_max", "T_cyc", "d_min", "d_max"),
 }
 """What a short vehicle file has."""
+
+WIDEST = 118
+"""Characters of a line of comment in a vehicle file."""
 
 TEMPLATE = """\
 A car: an entry is one for all blocks that have it, in the units that are given. What stands behind a # is not set.
@@ -96,6 +100,13 @@ def template() -> str:
     for title, names in sections.items():
         lines += ["", f"# {title}", *_template_lines(names, declared, title in SECTIONS)]
     return "\n".join(lines) + "\n"
+
+
+def vehicle_text(comment: Iterable[str], entries: Mapping[str, Any]) -> str:
+    """The text of a vehicle file with these entries, below lines of a comment, which are wrapped."""
+    lines = [part for line in comment for part in wrap(line, WIDEST) or [""]]
+    head = "\n".join(f"# {line}".rstrip() for line in lines)
+    return f"{head}\n\n" + "".join(f"{name} = {_toml(value)}\n" for name, value in entries.items())
 
 
 def _template_lines(names: tuple[str, ...], declared: "Declared", is_set: bool) -> Iterator[str]:

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from importlib.metadata import version
 from math import exp
 from pathlib import Path
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import DrivelineError
@@ -28,6 +27,7 @@ def run_step(args: Any, recording: "Measurement", vehicle: Mapping[str, Any], ou
     """
     if args.free or args.report:
         raise DrivelineError(f"--step gives C and phi_B alone: leave {'--free' if args.free else '--report'} out")
+    from ...fmus.building.car_entries import vehicle_text
     from ...fmus.building.one_car import updated
     from ..base.atomic_files import write_text
     from ..identification.step import identify_step
@@ -44,8 +44,7 @@ def run_step(args: Any, recording: "Measurement", vehicle: Mapping[str, Any], ou
         known = {name: float(f"{found.values[name]:.4g}") for name, half in found.halves.items() if half <= WIDEST}
         entries = updated(vehicle, known)
         head = f"The car of {args.recording.name}, by `driveline identify --step` (driveline-damping {{}})."
-        comment = [part for line in [head.format(version("driveline-damping")), *lines] for part in wrap(line, 118)]
-        text = "".join(f"# {line}\n" for line in comment) + "\n" + "".join(f"{n} = {v!r}\n" for n, v in entries.items())
+        text = vehicle_text([head.format(version("driveline-damping")), *lines], entries)
         made.begin()
         write_text(text, output)
         made.wrote(output)

@@ -1,11 +1,11 @@
 """What identification leaves behind: a vehicle file for the controller's design, and a document with all of it."""
 
 from collections.abc import Mapping
-from textwrap import wrap
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...fmus.building.car_entries import vehicle_text
 from ...fmus.building.one_car import updated
 from ..recordings.source import RecordingError
 from .drive_train import DELAYS, Parameters
@@ -25,9 +25,6 @@ MEANS = {
 
 WIDEST_INTERVAL = 0.5
 """Half of a 95 % interval over its value, up to which a parameter is one of a vehicle file."""
-
-WIDEST = 118
-"""Characters of a line of text in a vehicle file."""
 
 
 class Row(NamedTuple):
@@ -171,13 +168,7 @@ def vehicle_file(identified: Identified, comment: str, vehicle: Mapping[str, Any
         "",
         "What follows is for the design and both plants; the shafts of the validation vehicle follow from C.",
     ]
-    lines = [part for line in [*comment.splitlines(), "", *known] for part in wrap(line, WIDEST) or [""]]
-    head = "\n".join(f"# {line}".rstrip() for line in lines)
-    entries = identified_car(identified, vehicle)
-    return f"{head}\n\n" + "".join(
-        f"{name} = {'true' if value is True else 'false' if value is False else repr(value)}\n"
-        for name, value in entries.items()
-    )
+    return vehicle_text([*comment.splitlines(), "", *known], identified_car(identified, vehicle))
 
 
 def document(identified: Identified) -> dict[str, Any]:

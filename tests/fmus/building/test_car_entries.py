@@ -6,10 +6,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.fmus.building.car_entries import DEFAULT, ESTIMATED, FOLLOWS, SET, SOURCES, car, car_entries, template
+from driveline.fmus.building.car_entries import (
+    DEFAULT,
+    ESTIMATED,
+    FOLLOWS,
+    SET,
+    SOURCES,
+    car,
+    car_entries,
+    template,
+    vehicle_text,
+)
 from driveline.fmus.building.one_car import FOLLOW, of_one_car
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
+from driveline.fmus.toml_file import toml_entries
 from tests.together import together
 
 
@@ -97,6 +108,15 @@ def test_the_template_is_the_default_car(tmp_path: Path) -> None:
     path.write_text(template(), encoding="utf-8")
     assert car(read_vehicle(path)) == car()
     assert of_one_car(read_vehicle(path), FOLLOW) == read_vehicle(path), "and nothing follows"
+
+
+def test_what_is_written_as_a_vehicle_file_is_read_back(tmp_path: Path) -> None:
+    path, entries = tmp_path / "car.toml", {"C": 117.4, "mine": True, "theirs": False}
+    path.write_text(vehicle_text(["A car.", "", "of words " * 20], entries), encoding="utf-8")
+    assert toml_entries(path) == entries
+    lines = path.read_text(encoding="utf-8").splitlines()
+    assert lines[:2] == ["# A car.", "#"]
+    assert max(map(len, lines)) <= 120
 
 
 def test_every_line_of_the_template_can_be_set(tmp_path: Path) -> None:
