@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from ..catalogue import FMUS
 from ..description.variables import Variable
 from .estimates import HEAVIEST, LAWS, law
-from .one_car import DAMPERS, FOLLOW, INSTEAD, MEASURED, SHAFTS, WHEELS, WITH_MASS, of_one_car
+from .one_car import DAMPERS, FOLLOW, INSTEAD, MEASURED, SHAFTS, WHEELS, WITH_MASS, of_one_car, told_by_others
 from .parameter_files import car_names, declarations, of_vehicle
 
 SET, FOLLOWS, ESTIMATED, DEFAULT = "set", "follows", "estimated", "default"
@@ -139,13 +139,13 @@ def _entry(
     name: str, variable: Variable, blocks: tuple[str, ...], entries: Mapping[str, Any], full: Mapping[str, Any]
 ) -> Entry:
     origin, source = DEFAULT, ""
-    measured = next((by for by, of in INSTEAD.items() if by in entries and name in of), "")
     if name in entries:
         origin, full = SET, entries
-    elif name in full and name in LAWS and not measured and not (name == "C" and any(k in entries for k in SHAFTS)):
+    elif name in full and name in LAWS and name not in told_by_others(entries):
         origin, source = ESTIMATED, ", ".join(law(name, entries))
     elif name == "F_z0" and full.get(name) == HEAVIEST:
         origin, source = ESTIMATED, "m"
     elif name in full:
+        measured = next((by for by, of in INSTEAD.items() if by in entries and name in of), "")
         origin, source = FOLLOWS, measured or ("k_s" if name in SHAFTS and "k_s" in entries else SOURCES[name])
     return Entry(name, full.get(name, variable.start), variable.unit, _meaning(variable), origin, source, blocks)

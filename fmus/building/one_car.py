@@ -97,6 +97,12 @@ INSTEAD = {"frequency": ("C", *SHAFTS), "damping_ratio": tuple(DAMPERS), "gap": 
 """What follows from what is measured, and is not given beside it."""
 
 
+def told_by_others(entries: Collection[str]) -> set[str]:
+    """Names of entries that others tell, so that nobody need give or estimate them."""
+    told = {name for by, names in INSTEAD.items() if by in entries for name in names}
+    return told | {"C" for name in SHAFTS if name in entries}
+
+
 def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, Any]:
     """The entries with what follows from them; all else is as in the default car.
 
@@ -114,8 +120,7 @@ def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, 
         try:
             followed = followed | _detailed(frozenset({**given, **followed}.items()))
         except ParameterFileError as problem:
-            measured = {name for each in INSTEAD if each in given for name in INSTEAD[each]}
-            guessed = [name for name in followed if name in LAWS and name not in measured]
+            guessed = [name for name in followed if name in LAWS and name not in told_by_others(given)]
             raise ParameterFileError(f"{problem}{'; not given: ' if guessed else ''}{', '.join(guessed)}") from problem
     return {**{name: value for name, value in entries.items() if name not in MEASURED}, **followed}
 
@@ -161,9 +166,8 @@ def _common(given: frozenset[tuple[str, float]]) -> dict[str, float]:
     for name, of in INSTEAD.items():
         if name in car and (both := [each for each in of if each in car]):
             raise ParameterFileError(f"{_told(car, name, *both)}: leave one out, as {both[0]} follows from {name}")
-    elastic = any(name in car for name in SHAFTS)
-    elsewhere = {*(INSTEAD["gap"] if "gap" in car else ()), *(("C",) if elastic or "frequency" in car else ())}
-    found = {name: value for name, value in estimated(car).items() if name not in elsewhere}
+    elastic, told = any(name in car for name in SHAFTS), told_by_others(car)
+    found = {name: value for name, value in estimated(car).items() if name not in told}
     bounds = {name: DECLARED[name][1].bounds() for name in found}
     found = {name: min(max(value, bounds[name][0]), bounds[name][1]) for name, value in found.items()}
     if "gap" in car:

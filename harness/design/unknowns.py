@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from ...fmus.building.car_entries import Entry, car_entries
 from ...fmus.building.estimates import DECIDE
-from ...fmus.building.one_car import INSTEAD, SHAFTS, with_estimates
+from ...fmus.building.one_car import told_by_others, with_estimates
 from ...fmus.building.parameter_files import read_vehicle
 from ..base.plain_text import printed
 from ..loop.built_fmus import built
@@ -49,9 +49,8 @@ class Unknown(NamedTuple):
 
 def not_given(entries: Mapping[str, Any]) -> list[Entry]:
     """What of DECIDE no entry of a vehicle file tells."""
-    told = {name for by, names in INSTEAD.items() if by in entries for name in names}
-    told |= {"C"} if any(name in entries for name in SHAFTS) else set()
-    return [each for each in car_entries(entries) if each.name in {*DECIDE} - told - entries.keys()]
+    lacking = {*DECIDE} - told_by_others(entries) - entries.keys()
+    return [each for each in car_entries(entries) if each.name in lacking]
 
 
 def unknowns(entries: Mapping[str, Any], settings: Settings | None = None) -> list[Unknown]:
