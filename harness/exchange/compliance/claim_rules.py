@@ -10,7 +10,7 @@ from typing import Any
 from ...base.errors import InstantiationError, SimulationError
 from ...cosimulation.instance import instantiated
 from ...cosimulation.unpacked_fmu import Unpacked
-from .document import REALS, TRUE, Declared, document
+from .document import DOUBLES, REALS, TRUE, Declared, document
 from .event_host import EventHost, hosted
 from .exchange_host import ExchangeHost, integrated
 from .host import Host
@@ -98,13 +98,12 @@ def starts(fmu: Unpacked) -> Iterator[str]:
     found = document(fmu.interface)
     exact = [v for v in found.variables.values() if v.model.initial == "exact" and found.starts(v)]
     exact = [v for v in exact if v.type not in ("Clock", "Binary")]
-    scalars = [v for v in exact if v.element.find("Dimension") is None]
+    scalars = [v for v in exact if v.is_scalar]
     with initialized(fmu) as instance:
         actual = {v.key: [value] for v, value in zip(scalars, values(instance, scalars), strict=True)}
         for variable in exact:
             if variable.key not in actual:
-                arguments = [variable.model.valueReference], found.size(variable)
-                actual[variable.key] = instance.call(f"get{variable.type}", *arguments)
+                actual[variable.key] = _elements(instance, variable, found.size(variable))
             for start, value in zip(found.starts(variable), actual[variable.key], strict=True):
                 if not _starts_at(variable, start, value):
                     yield f"{variable.name} starts at {_text(value)}, in the description at {start}"
@@ -205,8 +204,8 @@ def _derivatives(fmu: Unpacked, kind: str) -> Iterator[str]:
 
 
 def _compared(probe: Probe, known: Declared, kind: str) -> Iterator[str]:
-    reals = [k for k, (variable, _) in enumerate(probe.unknowns) if variable.type in ("Real", "Float64")]
-    if known.type not in ("Real", "Float64") or not reals:
+    reals = [k for k, (variable, _) in enumerate(probe.unknowns) if variable.type in DOUBLES]
+    if known.type not in DOUBLES or not reals:
         return
     (value,) = values(probe.instance, [known])
     size = step(known, value, NEAR)
@@ -253,10 +252,8 @@ def output_derivatives(fmu: Unpacked) -> Iterator[str]:
     """Against the slopes of the outputs, at steps where these are smooth; most must agree."""
     kind = fmu.interface.description.coSimulation
     found = document(fmu.interface)
-    outputs = [v for v in found.variables.values() if v.model.causality == "output" and v.type in ("Real", "Float64")]
-    outputs = [
-        v for v in outputs if v.model.variability in (None, "continuous") and v.element.find("Dimension") is None
-    ]
+    outputs = [v for v in found.variables.values() if v.model.causality == "output" and v.type in DOUBLES]
+    outputs = [v for v in outputs if v.model.variability in (None, "continuous") and v.is_scalar]
     if not kind or not kind.maxOutputDerivativeOrder or not outputs:
         return
     references = [v.model.valueReference for v in outputs]
@@ -378,7 +375,8 @@ def order(fmu: Unpacked) -> Iterator[str]:
                     break
 
 
-def _elements(instance: Any, variable: Declared, size: int) -> list[float]:
+def _elements(instance: Any, variable: Declared, size: int) -> list[Any]:
+    """The values of a variable, which may be an array."""
     of_size = () if variable.type == "Real" else (size,)
     return instance.call(f"get{variable.type}", [variable.model.valueReference], *of_size)
 

@@ -25,6 +25,10 @@ SECTIONS = {
 
 REALS = ("Real", "Float32", "Float64")
 
+DOUBLES = ("Real", "Float64")
+
+TYPES_OF_FMI2 = ("Real", "Integer", "Boolean", "String", "Enumeration")
+
 TRUE = ("true", "1")
 
 
@@ -44,6 +48,10 @@ class Declared(NamedTuple):
     given: Mapping[str, str]
     element: Element
     model: ModelVariable
+
+    @property
+    def is_scalar(self) -> bool:
+        return self.element.find("Dimension") is None
 
 
 class Unknown(NamedTuple):
@@ -113,9 +121,6 @@ class Document:
             given = variable.given.get("start")
             found = [] if given is None else given.split() if self.fmi == 3 else [given]
         return found * self.size(variable) if len(found) == 1 else found
-
-
-TYPES_OF_FMI2 = ("Real", "Integer", "Boolean", "String", "Enumeration")
 
 
 def _unknown(element: Element, key: str) -> Unknown:

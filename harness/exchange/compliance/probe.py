@@ -80,7 +80,7 @@ def step(variable: Declared, value: float, share: float) -> float:
 
 def _scalars(found: Document, keys: Sequence[str]) -> list[Declared]:
     chosen = [found.variables[key] for key in keys]
-    return [v for v in chosen if v.type in MOVED and v.element.find("Dimension") is None and "clocks" not in v.given]
+    return [v for v in chosen if v.type in MOVED and v.is_scalar and "clocks" not in v.given]
 
 
 def _listed(found: Document, sections: Sequence[str]) -> list[tuple[Declared, Unknown]]:
