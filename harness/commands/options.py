@@ -314,8 +314,10 @@ def _output(text: str) -> Path:
 
 
 def output(default: str, files: str) -> Any:
-    """--output, the folder for everything that the command writes; `files` says what that is."""
-    return option(Path(default), f"for {files} (default: %(default)s)", _output, metavar="FOLDER")
+    """--output, the folder for everything that the command writes, or the file; `files` says what that is."""
+    ending = Path(default).suffix
+    metavar = f"FILE{ending}" if ending else "FOLDER"
+    return option(Path(default), f"for {files} (default: %(default)s)", _output, metavar=metavar)
 
 
 @record

@@ -19,7 +19,7 @@ ROAD = ("mu",)
 
 FAR = 5.0
 """A slider goes to so many times the value at the start, and down to this part of it, within what FMUs declare; further
-values can be typed."""
+values can be typed. One below 0 goes up to 0."""
 
 NEAR = {"C": 2.0, "c_slip": 2.0}
 """The same where half shafts would follow that are stiffer than any."""
@@ -70,7 +70,7 @@ def knobs(names: Sequence[str], fits: Sequence[Fit], given: Mapping[str, float])
         least = max(float(each.min) for _, each in owners if each.min is not None)
         most = min(float(each.max) for _, each in owners if each.max is not None)
         far = NEAR.get(name, FAR)
-        low = max(least, value / far) if least > 0.0 else max(least, 0.0)
+        low = max(least, value / far) if least > 0.0 else max(least, min(far * value, 0.0))
         unit = unit_of(variable) or ""
-        high = min(most, far * value if value > 0.0 else most)
+        high = min(most, far * value if value > 0.0 else most if value == 0.0 else 0.0)
         yield Knob(name, low, high, least, most, value, "" if unit == "1" else unit, str(variable.description))

@@ -113,6 +113,13 @@ def test_the_character_turns_a_gain_as_far_as_its_slider_goes(
     assert [each["gains"]["t_return"] for each in answers] == pytest.approx([sport, comfort])
 
 
+def test_every_slider_has_its_value_between_its_ends_also_one_below_0(data: dict[str, Any]) -> None:
+    every = {knob["name"]: knob for kind in data["knobs"].values() for knob in kind}
+    assert all(knob["low"] <= knob["value"] <= knob["high"] for knob in every.values())
+    assert [every["shape_2"][end] for end in ("low", "value", "high")] == pytest.approx([-2.3, -0.46, 0.0])
+    assert [every["shape_1"][end] for end in ("low", "value", "high")] == pytest.approx([0.0, 0.57, 2.85])
+
+
 DEMANDS = (
     [[0, -12], [1, -12], [1, 100]],
     [[0, 5], [1, 5], [1.5, 60]],
