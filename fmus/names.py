@@ -4,6 +4,10 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from ..models.controller import T_S as T_S
+from ..models.physics.vehicle import CAR
+
+T_MAX = CAR.T_max
+"""Largest torque of the motor of the default car in N.m."""
 
 COMPARATORS = ("NoDamping", "SpeedWashout", "SpeedDifference", "PaperObserver", "LinearObserver", "TrueMotion")
 """Controllers that ours is compared with, in the order of the tables."""

@@ -1,6 +1,7 @@
 """What the tutorial shows: a tip-in that swings, the same one damped, with other gains, and on a van."""
 
 from collections.abc import Mapping
+from math import inf
 from typing import Any
 
 from driveline.fmus.building.parameter_files import read_vehicle
@@ -40,12 +41,15 @@ def cars() -> dict[str, dict[str, Any]]:
 
 def _run(row: tuple[Mapping[str, Any], bool]) -> Results:
     parameters, control = row
-    return simulate(for_car(TIPIN, parameters), parameters=parameters, control=control)
+    return simulate(for_car(TIPIN, parameters.get("motor.T_max", inf)), parameters=parameters, control=control)
 
 
 def _table(rows: Mapping[str, tuple[Mapping[str, Any], bool]]) -> Table:
     found = zip(rows.values(), run_many(_run, rows.values(), label="tutorial"), strict=True)
-    cells = (metrics_cells(evaluate(results, for_car(TIPIN, parameters))) for (parameters, _), results in found)
+    cells = (
+        metrics_cells(evaluate(results, for_car(TIPIN, parameters.get("motor.T_max", inf))))
+        for (parameters, _), results in found
+    )
     return Table("tip-in", COLUMNS, dict(zip(rows, cells, strict=True)))
 
 
@@ -64,7 +68,7 @@ def measure() -> Measured:
     figures = {
         "oscillation": run_drawing(both[WITHOUT], TIPIN, title, FigureOptions(window=(0.8, 3.0))),
         "damped": step_drawing(both, TIPIN, PLANTS[0]),
-        "van": step_drawing(van, for_car(TIPIN, of_van), f"{PLANTS[0]}, van"),
+        "van": step_drawing(van, for_car(TIPIN, of_van.get("motor.T_max", inf)), f"{PLANTS[0]}, van"),
     }
     return Measured({"tipin15": _table(rows())}, figures)
 

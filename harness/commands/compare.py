@@ -56,7 +56,7 @@ def run(args: Arguments) -> int:
     from ..views.terminal import print_runs
 
     requested = args.manoeuvre if args.manoeuvre.manoeuvres else chosen(COMPARED)
-    requested = requested.for_car(next(iter(given.values())).parameters)
+    requested = requested.for_car(next(iter(given.values())))
     manoeuvres, read = requested.manoeuvres, list(requested.files.values())
     plants, names = (list(dict.fromkeys(key[k] for key in given)) for k in (0, 1))
     options = args.options(caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))

@@ -14,7 +14,6 @@ examples:
 from pathlib import Path
 
 from ..manoeuvres.catalogue import MANOEUVRES
-from ..manoeuvres.for_car import for_car
 from .arguments import option
 from .manoeuvres import Chosen, Listing, manoeuvre
 from .options import Loop, controllers, output, plants, record
@@ -36,16 +35,17 @@ class Arguments(Headings, Listing, Loop, Printing):
 def run(args: Arguments) -> int:
     args.manoeuvre.beside(MANOEUVRES)
     given = all_settings(args, args.plant, args.controller)
-    of_car = next(iter(given.values())).parameters
-    offered = args.manoeuvre.for_car(of_car).beside({name: for_car(each, of_car) for name, each in MANOEUVRES.items()})
     # here and not above: mistakes and help are answered without them
     import webbrowser
 
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
     from ..explorer.content import content, write_page
+    from ..manoeuvres.for_car import for_car, largest_torque
     from ..recordings.drive import read_drive
 
-    recording = None
+    first = next(iter(given.values()))
+    catalogue = {name: for_car(each, largest_torque(first)) for name, each in MANOEUVRES.items()}
+    offered, recording = args.manoeuvre.for_car(first).beside(catalogue), None
     if args.recording is not None:
         recording = read_drive(args.recording, **args.as_read)
     car = read_vehicle(args.vehicle) if args.vehicle else {}

@@ -11,8 +11,8 @@ from ..base.errors import DrivelineError
 from ..base.known_names import nearest
 from ..base.plain_text import plain
 from ..loop.places import PLANTS
+from ..loop.settings import Settings
 from ..manoeuvres.catalogue import MANOEUVRES
-from ..manoeuvres.for_car import for_car
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .arguments import option
 from .options import names_or_files, record
@@ -39,10 +39,12 @@ class Chosen(NamedTuple):
         found = {name: sha256(path.read_bytes()).hexdigest() for name, path in self.files.items()}
         return {"manoeuvre_files": found} if found else {}
 
-    def for_car(self, parameters: Mapping[str, Any]) -> "Chosen":
-        """These for the car of a loop, by its parameters; what is written in files stays as it is."""
-        each = self.manoeuvres.items()
-        return self._replace(manoeuvres={name: m if name in self.files else for_car(m, parameters) for name, m in each})
+    def for_car(self, settings: Settings) -> "Chosen":
+        """These for the car of a loop; what is written in files stays as it is."""
+        from ..manoeuvres.for_car import for_car, largest_torque  # not for help
+
+        T_max, each = largest_torque(settings), self.manoeuvres.items()
+        return self._replace(manoeuvres={name: m if name in self.files else for_car(m, T_max) for name, m in each})
 
     def beside(self, others: Mapping[str, Manoeuvre]) -> dict[str, Manoeuvre]:
         """These, then those of others that are not among them.

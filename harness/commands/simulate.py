@@ -45,7 +45,7 @@ def run(args: Arguments) -> int:
     given = settings(args, args.plant, args.controller).replace(
         control=args.control == "on", step_size=args.step, scheme=Scheme(args.scheme)
     )
-    chosen = args.manoeuvre.for_car(given.parameters)
+    chosen = args.manoeuvre.for_car(given)
     manoeuvre = chosen.first
     # here and not above: mistakes and help are answered without them
     from ..cosimulation.experiment import require_steps

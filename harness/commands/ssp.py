@@ -51,7 +51,7 @@ def run(args: Arguments) -> int:
     from ..loop.built_fmus import made_if_missing
     from ..manoeuvres.drivable import require_possible
 
-    chosen = args.manoeuvre.for_car(next(iter(given.values())).parameters)
+    chosen = args.manoeuvre.for_car(next(iter(given.values())))
     manoeuvre, ssp = chosen.first, args.output / "driveline.ssp"
     same: dict[str, Any] = {name: distinguishing(each, manoeuvre) for name, each in given.items()}
     plants = list(dict.fromkeys(args.plant or PLANTS))

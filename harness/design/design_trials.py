@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from enum import Enum
 from functools import cache
+from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -75,7 +76,7 @@ def settled(
     """Settling time in s and overshoot (1) of a loop with damping, parameters as `instance.name` -> value; settings of
     the run beside those."""
     course, made = (
-        for_car(MANOEUVRES[manoeuvre], parameters),
+        for_car(MANOEUVRES[manoeuvre], parameters.get("motor.T_max", inf)),
         settings_of(settings, plant=plant, parameters=parameters, seed=seed),
     )
     metrics = evaluate(simulate(course, made), course)
@@ -97,7 +98,7 @@ def measured(trial: Trial, seeds: tuple[int, ...] = (1, 2, 3), settings: Setting
         settings: of the runs beside what the trial says.
     """
     given, control = parameters(trial), trial.gains is not Gains.NONE
-    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], given)
+    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], given.get("motor.T_max", inf))
     made = settings_of(settings, plant=trial.plant, control=control, parameters=given)
     return mean([evaluate(simulate(manoeuvre, made, seed=seed), manoeuvre) for seed in seeds])
 

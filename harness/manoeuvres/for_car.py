@@ -1,24 +1,34 @@
 """The manoeuvres of the catalogue for a car: their demands are shares of what its motor can do."""
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from math import isinf
 
+from ...fmus.names import T_MAX
+from ..cosimulation.wiring import fit
+from ..loop.settings import Settings, loop
 from .manoeuvre import Manoeuvre
+from .road_load import torque_limit
 from .signals import FlatSine, Held, Lines, Signal
 
-T_MAX = 180.0
-"""In N.m, of the default car, for which they are written."""
+
+def largest_torque(settings: Settings) -> float:
+    """Of the motor of a loop in N.m, as it is set or as its FMU starts; inf: the FMU does not tell."""
+    return torque_limit(fit(loop(settings)).interfaces["motor"], settings.parameters)
 
 
-def for_car(manoeuvre: Manoeuvre, parameters: Mapping[str, Any]) -> Manoeuvre:
+def share_of(T_max: float) -> float:
+    """A largest torque over that of the default car, for which the catalogue is written; 1 for inf."""
+    return 1.0 if isinf(T_max) else T_max / T_MAX
+
+
+def for_car(manoeuvre: Manoeuvre, T_max: float) -> Manoeuvre:
     """A manoeuvre of the catalogue with its demand in proportion to the largest torque of the motor; the same one where
-    that is the default car's, or is not known.
+    that is the default car's.
 
     Args:
-        parameters: `instance.name` -> value, of the loop that is driven.
+        T_max: in N.m; inf where it is not known, which leaves the manoeuvre as it is.
     """
-    share = float(parameters.get("motor.T_max", T_MAX)) / T_MAX
+    share = share_of(T_max)
     if share == 1.0:
         return manoeuvre
     height = None if manoeuvre.dT is None else share * manoeuvre.dT

@@ -5,12 +5,14 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cache
+from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...cosimulation.system import System
 from ...loop.places import PLACES, PLANTS
 from ...loop.settings import Settings, loop
+from ...manoeuvres.for_car import for_car
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
 from ...simulation.many_runs import many
@@ -66,15 +68,10 @@ class CostEvaluation:
     def measured(self, trial: Trial) -> Metrics:
         """The metrics of one run."""
         controller, parameters, run = trial
-        results = simulate(
-            run.manoeuvre,
-            self.settings,
-            plant=run.plant,
-            controller=controller,
-            parameters=deviating({**self.car, **parameters}, run.plant, controller, run.deviation),
-            seed=run.seed,
-        )
-        return evaluate(results, run.manoeuvre)
+        given = deviating({**self.car, **parameters}, run.plant, controller, run.deviation)
+        manoeuvre = for_car(run.manoeuvre, given.get("motor.T_max", inf))
+        made = self.settings.replace(plant=run.plant, controller=controller, parameters=given, seed=run.seed)
+        return evaluate(simulate(manoeuvre, made), manoeuvre)
 
     def reference(self) -> dict[str, float]:
         """The gains that are computed for the car."""

@@ -13,6 +13,7 @@ from ....fmus.target.sources import CONTROLLERS
 from ...cosimulation.system import System
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import USUAL_MANOEUVRES
+from ...manoeuvres.for_car import for_car, largest_torque
 from ...metrics.evaluate import at_samples
 from ...simulation.simulate import simulate
 from .controllers import Programs
@@ -118,7 +119,8 @@ def in_loop(
     """
     with TemporaryDirectory(prefix="driveline-") as temporary:
         path = build_on_target(CONTROLLERS[controller], Path(temporary))
-        for manoeuvre in USUAL_MANOEUVRES:
+        T_max = largest_torque(settings)
+        for manoeuvre in (for_car(each, T_max) for each in USUAL_MANOEUVRES):
             there = at_samples(simulate(manoeuvre, settings, controller=path))
             here = at_samples(simulate(manoeuvre, settings))
             off_line = responses(programs.single(), fed(manoeuvre, there, system, names))

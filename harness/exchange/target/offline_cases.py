@@ -11,6 +11,7 @@ from ...cosimulation.interface import Interface
 from ...cosimulation.system import System
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import USUAL_MANOEUVRES
+from ...manoeuvres.for_car import for_car
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
 from ...manoeuvres.town_drive import PATH as TOWN_DRIVE
@@ -65,9 +66,10 @@ def cases_in_loop(
     system: System, interfaces: Mapping[str, Interface], names: Sequence[str], settings: Settings
 ) -> Iterator[Case]:
     """What it got in every manoeuvre and on the recorded drive; arguments as for `recorded`."""
+    T_max = torque_limit(interfaces["motor"], settings.parameters)
     for manoeuvre in USUAL_MANOEUVRES:
-        yield recorded(manoeuvre, system, names, settings)
-    track = Track.of(read_drive(Path(TOWN_DRIVE)), torque_limit(interfaces["motor"], settings.parameters))
+        yield recorded(for_car(manoeuvre, T_max), system, names, settings)
+    track = Track.of(read_drive(Path(TOWN_DRIVE)), T_max)
     load = RoadLoad.of_plant(interfaces["plant"], settings.parameters, settings.road_load)
     yield recorded(followed(track, load, settings)[0], system, names, settings)
 

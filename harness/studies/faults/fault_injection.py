@@ -1,7 +1,7 @@
 """Fault injection: the loop with SignalFaults between sensors and controller, and the three runs of a case."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,8 +16,10 @@ from ...cosimulation.system import Connection, Port, System
 from ...cosimulation.wiring import Fit, fit
 from ...loop.settings import Settings, loop, running
 from ...loop.stale_fmus import warn_of_stale
+from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.parts import Sum
+from ...manoeuvres.road_load import torque_limit
 from ...manoeuvres.signals import lines
 from ...metrics.evaluate import at_samples
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
@@ -67,15 +69,15 @@ class Runs(NamedTuple):
     undamped: np.ndarray
 
 
-@dataclass(frozen=True)
-class Limits:
-    """What the controller may demand, what it may add to the driver's demand, and take from it, N.m; and the largest
-    speed that it takes for plausible, rad/s."""
+class Limits(NamedTuple):
+    """What the controller may demand, what it may add to the driver's demand, and take from it, N.m; the largest speed
+    that it takes for plausible, rad/s; and the share of the demands of the catalogue that the car is asked for."""
 
     T_max: float
     T_add_max: float
     T_take_max: float
     omega_max: float
+    share: float
 
 
 class FaultRunner:
@@ -129,7 +131,8 @@ class FaultRunner:
             start = float(variable.start) if variable and variable.start else np.inf
             return float(given.get(f"controller.{name}", start))
 
-        return Limits(value("T_max"), value("T_add_max"), value("T_take_max"), value("omega_max"))
+        share = share_of(self._T_max(plant))
+        return Limits(value("T_max"), value("T_add_max"), value("T_take_max"), value("omega_max"), share)
 
     def without_status(self, plant: str) -> str | None:
         """The file of a controller of somebody else that does not tell its status."""
@@ -153,7 +156,7 @@ class FaultRunner:
         faults: Sequence[Fault] = (),
         control: bool = True,
     ) -> np.ndarray:
-        manoeuvre = _with(on_ice, SITUATIONS[situation].manoeuvre)
+        manoeuvre = for_car(_with(on_ice, SITUATIONS[situation].manoeuvre), self._T_max(plant))
         road = {**manoeuvre.road, "mu": ICE} if on_ice else manoeuvre.road
         parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise)
         settings = running(self._settings[plant].replace(control=control))
@@ -165,6 +168,10 @@ class FaultRunner:
         given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
         system = with_faults(loop(settings), self._injector)
         return _completed(at_samples(run(system, Experiment(manoeuvre.duration, **given))))
+
+    def _T_max(self, plant: str) -> float:
+        """The largest torque of the motor in N.m; inf where its FMU does not say."""
+        return torque_limit(self._fit(plant).interfaces["motor"], self._settings[plant].parameters)
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:

@@ -2,7 +2,8 @@
 
 A judge sees the evidence of one case and gives a number; the case is clean if none is above its limit. The times and
 shares behind the limits are those of the requirements: a wrong signal is noticed within 50 ms, everything is as before
-within 0.5 s, and the drive train never swings 1.2 times as much as without control.
+within 0.5 s, and the drive train never swings 1.2 times as much as without control. Torques are taken as if the motor
+were that of the default car, as the demands are.
 """
 
 from collections.abc import Callable
@@ -11,6 +12,7 @@ from math import inf
 
 import numpy as np
 
+from ....fmus.names import T_MAX
 from ...loop.places import T_S
 from ...metrics.oscillation import amplitude
 from ...metrics.spectrum import band_rms
@@ -36,6 +38,9 @@ NEAR = 0.05
 
 LEAST_RMS, LEAST_SWING = 1.0, 5.0
 """What the gear torque may always swing, N.m: rms and amplitude."""
+
+OF_DEFAULT = f" (over T_max/{T_MAX:g} N.m)"
+"""Said of torques that are taken as of the motor of the default car."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +113,7 @@ def time_to_return(seen: Evidence) -> float:
 def kick(seen: Evidence) -> float:
     """Largest torque in N.m that the controller adds once it is back, beyond what lies between nothing and what it adds
     within NEAR of that instant without the fault, less by how much the gear torque differs from that run in the 0.2 s
-    before."""
+    before; as of the motor of the default car."""
     if seen.end == inf:
         return 0.0
     fell = np.flatnonzero((seen.status == FALLBACK) & (seen.t >= seen.end))
@@ -117,22 +122,22 @@ def kick(seen: Evidence) -> float:
     beyond = np.abs(added - np.clip(added, -_largest_near(-usual), _largest_near(usual)))
     swing = np.abs(seen.runs.faulty["plant.T_gear"] - seen.runs.healthy["plant.T_gear"])
     excess = beyond - _largest_before(swing, round(0.2 / T_S))
-    return float(excess[seen.t > since].max(initial=0.0))
+    return float(excess[seen.t > since].max(initial=0.0)) / seen.limits.share
 
 
 def swing_left(seen: Evidence) -> float:
     """Amplitude in N.m of the gear torque in the last 0.5 s, less that without the fault; if a motor signal is still
-    wrong there, less that without control where this is larger."""
+    wrong there, less that without control where this is larger; as of the motor of the default car."""
     last = round(0.5 / T_S)
     left, usual, undamped = (amplitude(run["plant.T_gear"][-last:], T_S).max() for run in seen.runs)
-    return float(left - (max(usual, undamped) if seen.lasts else usual))
+    return float(left - (max(usual, undamped) if seen.lasts else usual)) / seen.limits.share
 
 
 def ratio_of_rms(seen: Evidence) -> float:
     """Gear torque from 5 to 50 Hz from the fault on, over that without control."""
     later = seen.t >= seen.begin - 0.1
     with_fault, undamped = (band_rms(run["plant.T_gear"][later], T_S) for run in (seen.runs.faulty, seen.runs.undamped))
-    return with_fault / max(undamped, LEAST_RMS)
+    return with_fault / max(undamped, LEAST_RMS * seen.limits.share)
 
 
 def ratio_of_swing(seen: Evidence) -> float:
@@ -140,7 +145,7 @@ def ratio_of_swing(seen: Evidence) -> float:
     fault where this is larger."""
     later = seen.t >= seen.begin
     with_fault, without, undamped = (amplitude(run["plant.T_gear"][later], T_S).max() for run in seen.runs)
-    return float(with_fault) / max(float(undamped), float(without), LEAST_SWING)
+    return float(with_fault) / max(float(undamped), float(without), LEAST_SWING * seen.limits.share)
 
 
 def _longest_lag(wrong: np.ndarray, believed: np.ndarray) -> float:
@@ -168,8 +173,8 @@ JUDGES = (
     Judge("stale", "s", STALE + 1e-9, "time for which a bad message counts as wheel speed", time_deaf, of_status=True),
     Judge("false alarm", "s", 1e-9, "time in fallback that no fault calls for", time_of_false_alarm, of_status=True),
     Judge("back", "s", BACK + 1e-9, "time until everything is as before", time_to_return, of_status=True),
-    Judge("kick", "N.m", 2.0, "torque added after that which the swing does not call for", kick),
-    Judge("settled", "N.m", 5.0, "swing that is left at the end", swing_left),
+    Judge("kick", "N.m", 2.0, f"torque added after that which the swing does not call for{OF_DEFAULT}", kick),
+    Judge("settled", "N.m", 5.0, f"swing that is left at the end{OF_DEFAULT}", swing_left),
     Judge("rms", "1", 1.2, "gear torque 5-50 Hz over that without control", ratio_of_rms),
     Judge("swing", "1", 1.2, "largest swing over that without control, or without the fault", ratio_of_swing),
 )

@@ -11,7 +11,7 @@ from ...base.errors import DrivelineError
 from ...cosimulation.parameter_changes import require_constant
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import MANOEUVRES
-from ...manoeuvres.for_car import for_car
+from ...manoeuvres.for_car import for_car, largest_torque
 from ...metrics.estimate import EstimateMetrics, estimate_metrics
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
@@ -156,7 +156,7 @@ def linear_part(part: Part, controller: str, parameters: Mapping[str, Mapping[st
 def run_of(run: Run, settings: Mapping[str, Settings]) -> tuple[Metrics, EstimateMetrics]:
     """What a run of the loop is worth; settings by plant."""
     changed = {} if run.parameter is None else {run.parameter: run.value}
-    manoeuvre = for_car(MANOEUVRES[run.manoeuvre], settings[run.plant].parameters)
+    manoeuvre = for_car(MANOEUVRES[run.manoeuvre], largest_torque(settings[run.plant]))
     results = simulate(manoeuvre, settings[run.plant].with_parameters(changed))
     return evaluate(results, manoeuvre), estimate_metrics(results)
 

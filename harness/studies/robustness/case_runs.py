@@ -13,6 +13,8 @@ from ...cosimulation.wiring import fit
 from ...design.uncertainty_box import changed
 from ...loop.settings import Settings, loop
 from ...manoeuvres.catalogue import MANOEUVRES
+from ...manoeuvres.for_car import for_car, share_of
+from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
 from ...simulation.simulate import simulate
@@ -62,7 +64,7 @@ class CaseRunner:
         one, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
         require_same_fmus(one.digests)
         settings = one.settings.with_parameters(changed(one.blocks, drawn.deviation))
-        return simulate(MANOEUVRES[case.manoeuvre], settings, control=control, seed=drawn.noise)
+        return simulate(self.manoeuvre(case), settings, control=control, seed=drawn.noise)
 
     def outcome(self, case: Case) -> Outcome:
         """What came of a case; one that an FMU ends has no metrics.
@@ -76,12 +78,20 @@ class CaseRunner:
             raise  # that is the machine, and not the controller
         except SimulationError as reason:
             return Outcome(case, {metric.name: nan for metric in METRICS}, plain(reason))
-        metrics = evaluate(results, MANOEUVRES[case.manoeuvre])
-        peak = float(np.abs(results["plant.T_gear"]).max()) / self.T_max(case)
+        metrics = evaluate(results, self.manoeuvre(case))
+        peak = float(np.abs(results["plant.T_gear"]).max()) / self._T_max(case)
         return Outcome(case, {m.name: peak if m is PEAK else m.of(metrics) for m in METRICS})
 
-    def T_max(self, case: Case) -> float:
-        """The largest torque of the motor in N.m; without limit where its FMU does not say."""
+    def manoeuvre(self, case: Case) -> Manoeuvre:
+        """What the car of a case is driven through."""
+        return for_car(MANOEUVRES[case.manoeuvre], self._T_max(case))
+
+    def share(self, case: Case) -> float:
+        """Of the demands of the catalogue that its car is asked for."""
+        return share_of(self._T_max(case))
+
+    def _T_max(self, case: Case) -> float:
+        """The largest torque of the motor in N.m; inf where its FMU does not say."""
         return self.loops[case.plant, case.controller].blocks["motor"].get("T_max", np.inf)
 
 

@@ -60,11 +60,13 @@ class Outcome:
     Attributes:
         measured: its METRICS by name; NaN where one has no value.
         reason: why an FMU ended it, or nothing.
+        share: of the demands of the catalogue that the car was asked for.
     """
 
     case: Case
     measured: Mapping[str, float]
     reason: str = ""
+    share: float = 1.0
 
     def magnitude(self, metric: str) -> float:
         """Of a metric, the larger the worse; what has no value is the worst."""
@@ -77,8 +79,8 @@ class Outcome:
 
     @property
     def quiet(self) -> bool:
-        step = MANOEUVRES[self.case.manoeuvre].dT or nan
-        return self.magnitude("end_swing") <= SETTLED * abs(step)
+        step = self.share * abs(MANOEUVRES[self.case.manoeuvre].dT or nan)
+        return self.magnitude("end_swing") <= SETTLED * step
 
     @property
     def stable(self) -> bool:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, MutableMapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from hashlib import sha256
 from math import nan
 from typing import Any
@@ -36,7 +37,8 @@ def campaign(
         numbers: of the draws.
         known, workers, executor: see `harness.simulation.many_runs.run_many`.
     """
-    return run_many(runner.outcome, cases(runner.loops, numbers), workers, "robustness", executor, known)
+    found = run_many(runner.outcome, cases(runner.loops, numbers), workers, "robustness", executor, known)
+    return [replace(each, share=runner.share(each.case)) for each in found]
 
 
 def order(runner: CaseRunner) -> Callable[[Case], tuple[int, int, int]]:

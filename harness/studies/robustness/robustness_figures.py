@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ...manoeuvres.catalogue import MANOEUVRES
 from ...views.colours import GREY
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import plot
@@ -81,4 +80,4 @@ def plot_draw(runner: CaseRunner, case: Case, caption: str, stem: Path) -> list[
     runs = both_runs(runner, case)
     drawn = f"draw {draw(case.number, runner.seed)}; {case.controller}"
     options = FigureOptions("\n".join(filter(None, (drawn, caption))))
-    return plot_step(runs, MANOEUVRES[case.manoeuvre], case.plant, stem, options)
+    return plot_step(runs, runner.manoeuvre(case), case.plant, stem, options)

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import SimulationError
-from ...manoeuvres.catalogue import MANOEUVRES
 from ...views.page.compared_runs import Compared, run_sections
 from ...views.page.figures import Figure
 from ...views.page.report import Heading, Row, Section, Table, write_report
@@ -84,7 +83,7 @@ def _worst_runs(own: Sequence[Summary], runner: CaseRunner) -> Iterator[tuple[st
     for summary in own:
         case = summary.worst.case
         with suppress(SimulationError):  # a car that is not fit to be driven without damping
-            yield _name(summary), Compared(MANOEUVRES[case.manoeuvre], both_runs(runner, case))
+            yield _name(summary), Compared(runner.manoeuvre(case), both_runs(runner, case))
 
 
 def _name(summary: Summary) -> str:

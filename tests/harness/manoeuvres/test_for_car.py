@@ -1,5 +1,7 @@
 """The manoeuvres of the catalogue are shares of what the motor of a car can do."""
 
+from math import inf
+
 import numpy as np
 
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -12,14 +14,12 @@ from tests.together import together
 @together("name", [*MANOEUVRES])
 def test_a_motor_of_twice_the_torque_is_asked_for_twice_as_much_and_the_default_one_for_the_same(name: str) -> None:
     manoeuvre = MANOEUVRES[name]
-    twice, t = for_car(manoeuvre, {"motor.T_max": 360.0}), np.linspace(0.0, manoeuvre.duration, 997)
+    twice, t = for_car(manoeuvre, 360.0), np.linspace(0.0, manoeuvre.duration, 997)
     assert np.array_equal(twice.T_driver(t), 2.0 * manoeuvre.T_driver(t))
     assert twice.dT == (2.0 * manoeuvre.dT if manoeuvre.dT else manoeuvre.dT)
     assert (twice.T_brake, twice.slope, twice.v_0, twice.road) == (
         manoeuvre.T_brake, manoeuvre.slope, manoeuvre.v_0, manoeuvre.road
     )  # fmt: skip
-    for same in ({"motor.T_max": 180.0}, {"controller.T_max": 360.0}, {}):
+    for same in (180.0, inf):
         assert for_car(manoeuvre, same) is manoeuvre
-    assert np.array_equal(
-        for_car(composed(name, 1.0, 0.0, constant(30.0)), {"motor.T_max": 90.0}).T_driver(t), 15 + 0 * t
-    )
+    assert np.array_equal(for_car(composed(name, 1.0, 0.0, constant(30.0)), 90.0).T_driver(t), 15 + 0 * t)

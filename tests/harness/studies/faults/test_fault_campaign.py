@@ -149,6 +149,17 @@ def test_on_ice_the_wheels_lock_and_spin(injector, settings, plant, least, most)
     assert speed_of_the_wheels(SPIN, 80.0).max() > most
 
 
+@pytest.mark.parametrize("T_max", [100.0, 1300.0])
+def test_a_car_with_another_motor_is_asked_for_its_share(injector, settings, T_max):
+    """In all three runs, and when the wheels are made to spin."""
+    made = settings["TwoMassDriveline"].with_parameters({f"{block}.T_max": T_max for block in ("motor", "controller")})
+    runner = FaultRunner(injector, {"TwoMassDriveline": made})
+    fault = Fault(SPIN, 1.5, 1.7, 80.0, 1.0)
+    demand = runner.runs(Case(1, "TwoMassDriveline", "gap", (fault,), 1)).undamped["controller.T_driver"]
+    assert runner.limits("TwoMassDriveline").share == T_max / 180.0
+    assert demand.max() == pytest.approx((100.0 + 80.0) * T_max / 180.0)
+
+
 @pytest.mark.parametrize("plant", PLANTS)
 def test_on_a_hill_of_ice_the_wheels_spin_without_a_fault(injector, settings, plant):
     """While the driver pushes; the design model has slip in the place of a limit of friction."""

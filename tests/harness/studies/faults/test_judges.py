@@ -42,10 +42,10 @@ def with_(*changes):
     return run
 
 
-def clean(judge, run, healthy=None, undamped=None, kind="motor speed offset", end=END):
+def clean(judge, run, healthy=None, undamped=None, kind="motor speed offset", end=END, share=1.0):
     """Whether a judge finds a run under a fault clean."""
     runs = Runs(run, quiet() if healthy is None else healthy, quiet() if undamped is None else undamped)
-    seen = Evidence(runs, (Fault(kind, BEGIN, end, 1.0, 1.0),), Limits(180.0, 60.0, 100.0, 2000.0))
+    seen = Evidence(runs, (Fault(kind, BEGIN, end, 1.0, 1.0),), Limits(180.0, 60.0, 100.0, 2000.0, share))
     (found,) = (each for each in JUDGES if each.name == judge)
     return found.measure(seen) <= found.limit
 
@@ -202,6 +202,18 @@ def test_the_drive_train_swings_little_more_than_without_control(judge, undamped
     run["plant.T_gear"] = ratio * max(undamped, least) * wave
     off["plant.T_gear"] = undamped * wave
     assert clean(judge, run, undamped=off) == verdict
+
+
+@pytest.mark.parametrize(
+    ("judge", "limit"), [("kick", 2.0), ("settled", 5.0), ("rms", 1.2 * 2**0.5), ("swing", 1.2 * 5.0)]
+)
+@pytest.mark.parametrize(("factor", "verdict"), [(0.99, True), (1.01, False)])
+def test_a_motor_of_ten_times_the_torque_may_leave_ten_times_as_much(judge, limit, factor, verdict):
+    run, height = quiet(), 10.0 * factor * limit
+    run["plant.T_gear"] = (judge != "kick") * height * np.sin(2.0 * np.pi * 10.0 * (T - 0.9))
+    run["controller.T_damp"][between(END + 0.75, END + 0.8)] = (judge == "kick") * height
+    assert clean(judge, run, share=10.0) == verdict
+    assert clean(judge, run, share=11.0)
 
 
 @pytest.mark.parametrize(("ratio", "verdict"), [(1.19, True), (1.21, False)])

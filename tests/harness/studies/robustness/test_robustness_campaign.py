@@ -1,5 +1,6 @@
 """A campaign: all draws with every controller, resumed where it was stopped, the same runs on one process or more."""
 
+from dataclasses import replace
 from shutil import copytree
 from typing import Any
 
@@ -31,6 +32,9 @@ class Pretended(CaseRunner):
         self.loops: Any = dict.fromkeys(LOOPS)
         self.asked = []
         self._fails_at = fails_at
+
+    def share(self, case):
+        return 1.0
 
     def outcome(self, case):
         if len(self.asked) == self._fails_at:
@@ -102,6 +106,18 @@ def test_a_case_is_the_drawn_car_with_the_drawn_noise(controllers, plant, contro
     metrics, found = evaluate(expected, MANOEUVRES["tipout"]), made.outcome(case).measured
     assert found["settling_time"] == metrics.settling_time
     assert found["gear_torque_peak"] == np.abs(expected["plant.T_gear"]).max() / 180.0
+
+
+@pytest.mark.parametrize("T_max", [100.0, 1300.0])
+def test_a_car_with_another_motor_is_asked_for_its_share_and_may_swing_by_that(controllers, T_max):
+    made = runner(controllers, "TwoMassDriveline", parameters={"motor.T_max": T_max, "controller.T_max": T_max})
+    case = Case("TwoMassDriveline", "DampingController", 3, "tipin15")
+    steps = np.ptp(made.results(case)["controller.T_driver"]), MANOEUVRES["tipin15"].dT
+    assert steps[0] == pytest.approx(steps[1] * T_max / 180.0) == made.manoeuvre(case).dT
+    assert made.share(case) == T_max / 180.0
+    for factor, quiet in ((1.0 - 1e-9, True), (1.0 + 1e-9, False)):
+        swings = replace(outcome(end_swing=0.05 * factor * steps[0]), share=made.share(case))
+        assert swings.quiet == quiet
 
 
 def test_a_factor_is_on_what_was_set(controllers):
