@@ -154,26 +154,34 @@ class Loop:
         )
         return True
 
-    def begin(self, experiment: Experiment) -> tuple[Wires, Results, list[Change]]:
+    def begin(
+        self, experiment: Experiment, alike: tuple[Wires, Results] | None = None
+    ) -> tuple[Wires, Results, list[Change]]:
         """Brings the FMUs from reset to the first step; gives what they are bound to, a table with the first row, and
         the parameters that are to be changed.
+
+        Args:
+            alike: the same of an experiment with the same scheme, instants and inputs.
 
         Raises:
             WiringError, SimulationError: as of `run`.
         """
-        time = experiment.time()
         require(unknown(self.fitted, experiment.inputs, experiment.parameters))
-        samples = self._present(experiment.samples(time))
         parameters = self._present(experiment.parameters)
+        time = experiment.time() if alike is None else np.asarray(alike[1]["time"])
         due = changes(parameters, time)
         self._step_size.value = experiment.step_size
-        wires = self._wired(Scheme(experiment.scheme), tuple(samples))
-        table = wires.layout.table(time, samples)
-        del samples  # the table has them
+        wires, table = self._known(experiment, time) if alike is None else _copied(*alike)
         self.reset()
         self._is_new, self.ended = False, None
         self._initialize(wires, table, initial(parameters), experiment.tolerance)
         return wires, table, due
+
+    def _known(self, experiment: Experiment, time: np.ndarray) -> tuple[Wires, Results]:
+        """What the FMUs are bound to, and a table with the inputs from outside."""
+        samples = self._present(experiment.samples(time))
+        wires = self._wired(Scheme(experiment.scheme), tuple(samples))
+        return wires, wires.layout.table(time, samples)
 
     def _tuned(self, steps: Iterable[range], due: Sequence[Change]) -> Iterator[range]:
         """The steps; before some of them parameters are set.
@@ -241,7 +249,8 @@ class Loop:
         self._propagate(wires, table, anew=False)  # some have their first outputs only now
 
     def _propagate(self, wires: Wires, table: np.ndarray, anew: bool = True) -> None:
-        """Outputs to inputs until nothing changes; each round settles at least one connection.
+        """Outputs to inputs until nothing changes; each round settles at least one connection, and after the first one
+        only instances whose inputs have changed are called.
 
         Args:
             anew: whether nothing was sent before.
@@ -250,17 +259,22 @@ class Loop:
         if anew:
             row[:] = bytes(len(row))
             row[:known] = data[:known]
-        before = None
+        before, due = None, {instance.number for instance in self.instances}
         for _ in range(len(self.fitted.system.connections) + 2):
             for call in wires.hand_over:
-                if call.changed:
-                    call.changed()
-                _check(call, made(call))
+                if call.changed and call.changed():
+                    due.add(call.instance.number)
+                if call.instance.number in due:
+                    _check(call, made(call))
             if row == before:
                 data[: table.itemsize] = row[: table.itemsize]
                 return
-            before = row[:]
+            before, due = row[:], set[int]()
         raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
+
+
+def _copied(wires: Wires, table: Results) -> tuple[Wires, Results]:
+    return wires, wires.layout.table_like(table)
 
 
 def _tolerance(instance: Instance, given: float | None) -> float | None:

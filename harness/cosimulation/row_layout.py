@@ -109,11 +109,22 @@ class Layout:
                 rows[name][piece] = samples[piece] if samples.shape else samples
         return table
 
-    def results(self, table: Results) -> Results:
-        """The same memory with the Booleans as such."""
+    def table_like(self, other: Results) -> Results:
+        """Another one with what is known of one in memory."""
+        known = (len(other), -1)
+        rows = np.empty_like(np.asarray(other))
+        rows.view(np.uint8).reshape(known)[:, : self.known] = other.view(np.uint8).reshape(known)[:, : self.known]
+        return Results(rows, self.units)
+
+    def results(self, table: Results, are_truths: bool = False) -> Results:
+        """The same memory with the Booleans as such.
+
+        Args:
+            are_truths: whether all that stand there are 0 or 1.
+        """
         rows = np.asarray(table)
         for piece in table.pieces():
-            for name in self._truths:
+            for name in () if are_truths else self._truths:
                 rows[name][piece] = rows[name][piece] != 0
         return Results(table.view(self.recorded), self.units, table.file)
 

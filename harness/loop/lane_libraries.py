@@ -40,7 +40,7 @@ def _blocks() -> "dict[str, Fmu]":
 
 
 def _is_ours(path: Path) -> bool:
-    if path.stem not in _blocks() or is_stale(path):
+    if is_stale(path):
         return False
     with zipfile.ZipFile(path) as archive:
         return IN_NATIVE in archive.namelist()

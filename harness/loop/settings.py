@@ -208,17 +208,26 @@ def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes])
     """
     made = running(settings(given, **changes))
     files = _files(made, made.build or chosen_build(made))
+    own = frozenset(place for place, block in made.blocks.items() if str(block) in PLACES[place])
+    return _system(tuple(files.items()), tuple(made.mapping.items()), own, made.limits)
+
+
+@lru_cache(64)  # of many runs one
+def _system(
+    files: tuple[tuple[str, Path], ...], mapping: tuple[tuple[str, str], ...], own: frozenset[str], limits: Limits
+) -> System:
+    instances = dict(files)
     return System(
-        instances=files,
-        connections=CONNECTIONS + (TRUTH if files["controller"].stem == "TrueMotion" else ()),
+        instances=instances,
+        connections=CONNECTIONS + (TRUTH if instances["controller"].stem == "TrueMotion" else ()),
         inputs=INPUTS,
         parameters=PARAMETERS,
         outputs=OUTPUTS,
-        mapping=made.mapping,
+        mapping=dict(mapping),
         optional=OPTIONAL,
         offered=OFFERED,
-        own=frozenset(place for place, block in made.blocks.items() if str(block) in PLACES[place]),
-        limits=made.limits,
+        own=own,
+        limits=limits,
     )
 
 

@@ -3,19 +3,19 @@
 The signals are read at the samples of the controller, T_s apart.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
+from typing import Any
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from ..base.argument_kinds import A_MANOEUVRE, require_kind
 from ..loop.places import T_S
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured
-from .oscillation import SPAN, amplitude
+from .oscillation import amplitude, straight_line
 from .run_metrics import Metrics
-from .spectrum import TO_50_HZ, band_rms, own_band
+from .spectrum import TO_50_HZ, BandSpectrum, band_rms, own_band
 from .step_response import Response, height_of_step, response, settling_time
 
 STATIONARY, FADED = 0.6, 0.9
@@ -61,12 +61,10 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     require_kind("results", results, np.ndarray, "results of a run, as simulate gives them")
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
     every, t_0, band = _stride(results, T_s), manoeuvre.t_0, own_band(getattr(results, "frequency", None))
-    rows, sampled = results, results[::every]
-    if (
-        getattr(results, "file", None) is None
-    ):  # else columns are read when they are needed: all would not fit in memory
+    rows, sampled, kept = results, results[::every], _anew
+    if getattr(results, "file", None) is None:  # else columns are read when needed: all would not fit in memory
         rows = {name: np.ascontiguousarray(results[name]) for name in COLUMNS}
-        sampled = {name: column[::every] for name, column in rows.items()}
+        sampled, kept = {name: np.ascontiguousarray(column[::every]) for name, column in rows.items()}, cache
 
     def t() -> np.ndarray:
         return sampled["time"]
@@ -74,8 +72,17 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     def T_gear() -> np.ndarray:
         return sampled["plant.T_gear"]
 
+    @kept
     def e() -> np.ndarray:
         return added_torque(sampled["controller.T_driver"], sampled["controller.T_ref"])
+
+    @kept
+    def a_body() -> BandSpectrum:
+        return BandSpectrum(windowed(sampled["plant.a_body"]), T_s)
+
+    @kept
+    def swing() -> np.ndarray:
+        return amplitude(T_gear(), T_s)
 
     @cache
     def dT() -> float:
@@ -89,26 +96,30 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     def impacts() -> np.ndarray:
         return impact_speeds(rows, t_0)
 
+    @cache
+    def window() -> slice:
+        return slice(None) if manoeuvre.dT is None else _within(t(), t_0 + WINDOW[0], t_0 + WINDOW[1])
+
     def windowed(signal: np.ndarray) -> np.ndarray:
-        return signal if manoeuvre.dT is None else _piece(signal, t(), t_0 + WINDOW[0], t_0 + WINDOW[1])
+        return signal[window()]
 
     computed = {
-        "settling_time": lambda: settling_time(T_gear(), T_s, t_0, dT()),
+        "settling_time": lambda: settling_time(swing(), T_s, t_0, dT()),
         "overshoot": lambda: step().overshoot,
         "damping_ratio": lambda: step().damping_ratio,
         "gear_torque_rms": lambda: band_rms(windowed(T_gear()), T_s, band),
-        "jerk_rms": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, band, derivative=True),
+        "jerk_rms": lambda: a_body().rms(band, derivative=True),
         "impact_speed": lambda: float(impacts().max(initial=0.0)),
-        "impact_speed_90": lambda: float(np.quantile(impacts(), 0.9)) if len(impacts()) else 0.0,
+        "impact_speed_90": lambda: nine_of_ten(impacts()),
         "crossing_time": lambda: crossing_time(rows, t_0),
         "response_delay": lambda: step().delay,
-        "withheld_time": lambda: withheld_time(_piece(e(), t(), t_0, t_0 + WITHHELD), T_s, dT()),
+        "withheld_time": lambda: withheld_time(e()[_within(t(), t_0, t_0 + WITHHELD)], T_s, dT()),
         "stationary_torque_change": lambda: stationary_change(sampled["controller.T_driver"], e(), T_s),
-        "jerk_rms_to_50_Hz": lambda: band_rms(windowed(sampled["plant.a_body"]), T_s, TO_50_HZ, derivative=True),
+        "jerk_rms_to_50_Hz": lambda: a_body().rms(TO_50_HZ, derivative=True),
         "added_torque_rms": lambda: float(np.sqrt(np.mean(windowed(e()) ** 2))),
         "added_torque_peak": lambda: float(np.abs(windowed(e())).max()),
         "gear_torque_peak": lambda: float(np.abs(windowed(T_gear())).max()),
-        "end_swing": lambda: float(amplitude(T_gear()[-round((1.0 + SPAN) / T_s) :], T_s)[-round(1.0 / T_s) :].max()),
+        "end_swing": lambda: float(swing()[-round(1.0 / T_s) :].max()),
         "plateau_swing": lambda: plateau_swing(t(), T_gear(), manoeuvre.plateau_ends),
     }
     return Metrics(**measured(computed, none_because=not_finite(rows)))
@@ -117,10 +128,20 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
 def not_finite(results: Rows) -> str | None:
     """Which signal is not finite, and from when on; None if all are."""
     for name in COLUMNS:
-        wrong = np.flatnonzero(~np.isfinite(results[name]))
-        if len(wrong):
-            return f"{name} is not finite at {results['time'][wrong[0]]:g} s"
+        finite = np.isfinite(results[name])
+        if not finite.all():
+            return f"{name} is not finite at {results['time'][finite.argmin()]:g} s"
     return None
+
+
+def _anew(function: Callable[[], Any]) -> Callable[[], Any]:
+    """What is not kept."""
+    return function
+
+
+def nine_of_ten(values: np.ndarray) -> float:
+    """What nine of ten values do not exceed, between two of them on the line through both; 0 without values."""
+    return float(np.interp(0.9 * (len(values) - 1), np.arange(len(values)), np.sort(values))) if len(values) else 0.0
 
 
 def stationary_change(T_driver: np.ndarray, e: np.ndarray, T_s: float) -> float:
@@ -241,18 +262,18 @@ def plateau_swing(t: np.ndarray, T_gear: np.ndarray, plateau_ends: tuple[float, 
         raise Absent("the run ends before the last plateau of the demand")
     swings = []
     for end in plateau_ends:
-        times, torques = (_piece(signal, t, end - 0.45, end - 0.02) for signal in (t, T_gear))
-        swings.append(np.ptp(torques - Polynomial.fit(times, torques, 1)(times)) / 2.0)
+        times, torques = (signal[_within(t, end - 0.45, end - 0.02)] for signal in (t, T_gear))
+        swings.append(np.ptp(torques - straight_line(times, torques, times)) / 2.0)
     return float(np.mean(swings))
 
 
-def _piece(signal: np.ndarray, t: np.ndarray, start: float, end: float) -> np.ndarray:
-    """The samples from start to end.
+def _within(t: np.ndarray, start: float, end: float) -> slice:
+    """Which samples are from start to end.
 
     Raises:
         Absent: there are less than two.
     """
-    piece = signal[np.searchsorted(t, start - 1e-9) : np.searchsorted(t, end + 1e-9, side="right")]
-    if len(piece) < 2:
+    first, stop = np.searchsorted(t, start - 1e-9), np.searchsorted(t, end + 1e-9, side="right")
+    if stop - first < 2:
         raise Absent(f"the run has no samples from {start:g} to {end:g} s")
-    return piece
+    return slice(first, stop)

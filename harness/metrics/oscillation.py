@@ -4,7 +4,6 @@ from functools import lru_cache
 from math import ceil, log, pi, sqrt, tan
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from .declaration import Absent
 
@@ -55,10 +54,19 @@ def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> fl
     """
     extremes = _alternating_extremes(low_passed(y, T_s, 12.0)[first:], round(0.03 / T_s))[:30]
     if len(extremes) >= 3:
-        s = -Polynomial.fit(np.arange(len(extremes)), np.log(np.abs(extremes)), 1).convert().coef[1]
+        numbers = np.arange(2)
+        first, second = straight_line(np.arange(len(extremes)), np.log(np.abs(extremes)), numbers)
+        s = first - second
     else:
         s = -log(max(1e-4, overshoot))
     return min(1.0, float(s / sqrt(pi**2 + s**2)))
+
+
+def straight_line(t: np.ndarray, x: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """The line of least squares through x over t, at other instants."""
+    middle = t.mean()
+    since = t - middle
+    return x.mean() + np.dot(since, x) / np.dot(since, since) * (at - middle)
 
 
 def low_passed(x: np.ndarray, T_s: float, corner: float) -> np.ndarray:

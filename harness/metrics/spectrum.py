@@ -1,5 +1,7 @@
 """The share of a record that lies in a band of frequencies."""
 
+from functools import cached_property
+
 import numpy as np
 
 from .declaration import Absent
@@ -33,39 +35,47 @@ def band_rms(x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN,
     Raises:
         Absent: x is shorter than a period of the lowest frequency of the band.
     """
-    return float(np.linalg.norm(band_parts(x, T_s, band, derivative)))
+    return BandSpectrum(x, T_s).rms(band, derivative)
 
 
-def band_parts(
-    x: np.ndarray, T_s: float, band: tuple[float, float] = DRIVE_TRAIN, derivative: bool = False
-) -> np.ndarray:
-    """What the rms in a band is the norm of: the parts at its frequencies, complex, linear in x.
+class BandSpectrum:
+    """That of x, (N,) or (N, columns), T_s apart, for several bands.
 
     The straight line from the first to the last sample is subtracted, so that a drift does not leak
     into the band; then rms = sqrt(2 sum |X|^2)/N over the band of the discrete Fourier transform X
     (of a derivative X times 2 pi j f).
-
-    Args:
-        x: (N,) or (N, columns), see `band_rms`.
-
-    Returns:
-        (frequencies,) or (frequencies, columns).
-
-    Raises:
-        Absent: as by `band_rms`.
     """
-    n = len(x)
-    f = np.fft.rfftfreq(n, T_s)
-    within = np.flatnonzero((f >= band[0]) & (f <= band[1]))
-    f = f[within]
-    if band[0] * n * T_s < 1.0 and band[0] > 0.0:
-        raise Absent(f"the run is shorter than a period of {band[0]:g} Hz")
-    line = np.linspace(x[0], x[-1], n)
-    x = np.subtract(x, line, out=line)
-    X = np.fft.rfft(x, axis=0)[within] if n <= MOST_AT_ONCE else _in_blocks(x, within)
-    if derivative:
-        X = (X.T * (2j * np.pi * f)).T
-    return np.sqrt(2.0) / n * X
+
+    def __init__(self, x: np.ndarray, T_s: float) -> None:
+        line = np.linspace(x[0], x[-1], len(x))
+        self._x, self._T_s = np.subtract(x, line, out=line), T_s
+
+    @cached_property
+    def _transform(self) -> np.ndarray:
+        return np.fft.rfft(self._x, axis=0)
+
+    def rms(self, band: tuple[float, float], derivative: bool = False) -> float:
+        """As by `band_rms`."""
+        return float(np.linalg.norm(self.parts(band, derivative)))
+
+    def parts(self, band: tuple[float, float], derivative: bool = False) -> np.ndarray:
+        """What the rms in a band is the norm of: the parts at its frequencies, complex, linear in x.
+
+        Returns:
+            (frequencies,) or (frequencies, columns).
+
+        Raises:
+            Absent: as by `band_rms`.
+        """
+        n = len(self._x)
+        f = np.fft.rfftfreq(n, self._T_s)
+        within = np.flatnonzero((f >= band[0]) & (f <= band[1]))
+        if band[0] * n * self._T_s < 1.0 and band[0] > 0.0:
+            raise Absent(f"the run is shorter than a period of {band[0]:g} Hz")
+        X = self._transform[within] if n <= MOST_AT_ONCE else _in_blocks(self._x, within)
+        if derivative:
+            X = (X.T * (2j * np.pi * f[within])).T
+        return np.sqrt(2.0) / n * X
 
 
 def _in_blocks(x: np.ndarray, k: np.ndarray) -> np.ndarray:

@@ -1,13 +1,13 @@
 """What the gear torque makes of a step of the demand."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.polynomial import Polynomial
 
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent
-from .oscillation import amplitude, damping_ratio
+from .oscillation import damping_ratio, straight_line
 
 FITTED = 0.9
 """Length in s of the end of a run to which the line of the final value is fitted."""
@@ -32,9 +32,11 @@ def height_of_step(manoeuvre: Manoeuvre, t: np.ndarray) -> float:
         raise Absent("the manoeuvre is no step")
     if t[-1] < manoeuvre.t_0 + FITTED:
         raise Absent(f"the run ends less than {FITTED:g} s after the step")
-    demand = np.broadcast_to(np.asarray(manoeuvre.T_driver(t), dtype=float), t.shape)
-    before, after = demand[t < manoeuvre.t_0 - 1e-9], demand[t > t[-1] - FITTED]
-    start = before[0] if len(before) else demand[0]
+    before, after = (
+        np.broadcast_to(np.asarray(manoeuvre.T_driver(part), dtype=float), part.shape)
+        for part in (t[: max(1, int(np.searchsorted(t, manoeuvre.t_0 - 1e-9)))], t[t > t[-1] - FITTED])
+    )
+    start = before[0]
     tolerance = 1e-6 * abs(manoeuvre.dT)
     if not (abs(after - start - manoeuvre.dT) <= tolerance).all() or not tolerance > 0.0:
         raise Absent("the demand does not stay at the height of its step")
@@ -43,13 +45,13 @@ def height_of_step(manoeuvre: Manoeuvre, t: np.ndarray) -> float:
     return manoeuvre.dT
 
 
-def settling_time(T_gear: np.ndarray, T_s: float, t_0: float, dT: float) -> float:
-    """Time in s from t_0 to the last sample at which the swing exceeds SETTLED dT, plus one sample.
+def settling_time(swing: np.ndarray, T_s: float, t_0: float, dT: float) -> float:
+    """Time in s from t_0 to the last sample at which the swing of the gear torque exceeds SETTLED dT, plus one sample.
 
     Raises:
         Absent: it still does at the end.
     """
-    exceeding = amplitude(T_gear, T_s)[round(t_0 / T_s) :] > SETTLED * abs(dT)
+    exceeding = swing[round(t_0 / T_s) :] > SETTLED * abs(dT)
     if exceeding[-1]:
         raise Absent("the gear torque still swings when the run ends")
     last = np.flatnonzero(exceeding)
@@ -84,17 +86,17 @@ class Response:
         """T_gear from its initial value, over its way, from the step on."""
         return (self.T_gear[self.first :] - self.initial) / self.way
 
-    @property
+    @cached_property
     def y(self) -> np.ndarray:
         """T_gear about the line of its final value, over its way."""
         return (self.T_gear - self.final) / self.way
 
-    @property
+    @cached_property
     def overshoot(self) -> float:
         """Over the line of the final value."""
         return max(0.0, float(self.y[self.first :].max()))
 
-    @property
+    @cached_property
     def delay(self) -> float:
         """Time in s until 90 % of the way are made.
 
@@ -123,7 +125,7 @@ def response(t: np.ndarray, T_gear: np.ndarray, t_0: float, dT: float) -> Respon
     """
     T_s = float(t[1] - t[0])
     last = fitted(t)
-    final = Polynomial.fit(t[last], T_gear[last], 1)(t)
+    final = straight_line(t[last], T_gear[last], t)
     first = round(t_0 / T_s)
     found = Response(T_gear, final, initial_value(T_gear, first), first, T_s)
     if not abs(found.way) >= LEAST_WAY * abs(dT):

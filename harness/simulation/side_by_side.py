@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextvars import copy_context
 from dataclasses import dataclass
 from functools import partial
-from threading import Semaphore, Thread
+from threading import Lock, Thread
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -88,7 +88,9 @@ class _Turn(KeptLoops):
         self.request: _RunRequest | None = None
         self.outcome = Outcome(None, _Stopped())
         self._reply: Any = None
-        self._mine, self._yours = Semaphore(0), Semaphore(0)
+        self._mine, self._yours = Lock(), Lock()
+        for lock in (self._mine, self._yours):
+            lock.acquire()
         arguments = self._work, function, case
         with uninterrupted_children():
             Thread(target=copy_context().run, args=arguments, daemon=True).start()

@@ -2,8 +2,10 @@
 
 import logging
 from collections.abc import Mapping
+from functools import lru_cache
 from numbers import Real
 from sys import float_info
+from types import MappingProxyType
 from typing import Any, Unpack
 
 import numpy as np
@@ -108,17 +110,18 @@ def _checked(parameters: dict[str, Any]) -> dict[str, Any]:
     return parameters
 
 
-def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) -> dict[str, Source]:
-    """What the loop is given from outside during a manoeuvre.
+@lru_cache(1)
+def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) -> Mapping[str, Source]:
+    """What the loop is given from outside during a manoeuvre; runs that are given the same one are sampled once where
+    they are made in lanes.
 
     The controller samples its inputs at the instants. The plant holds brake and slope for a communication step of
     `step_size` s; it gets what they are in the middle of the step, as straight lines are on average. Held from its
     beginning, they would be late by half a step, and how a car comes to rest depends on that.
     """
     given = {port.name: _value(port, manoeuvre, enable=control) for port in INPUTS}
-    return {
-        name: _ahead(value, 0.5 * step_size) if name.startswith("plant.") else value for name, value in given.items()
-    }
+    ahead = {name: _ahead(value, 0.5 * step_size) for name, value in given.items() if name.startswith("plant.")}
+    return MappingProxyType(given | ahead)
 
 
 def _ahead(signal: Signal, time: float) -> Signal:

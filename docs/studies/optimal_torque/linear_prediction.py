@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from driveline.harness.loop.places import T_S
-from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
+from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, BandSpectrum
 
 from .contacts import GAP, PARTS, Contacts
 from .linear_car import OMEGA_1, OMEGA_2, PHI, STATES, LinearCar
@@ -178,6 +178,6 @@ class Predictor:
 
 @cache
 def _parts_over_samples(window: int, band: tuple[float, float], derivative: bool) -> np.ndarray:
-    """(rows, window): real and imaginary parts of `band_parts` over the samples of the window."""
-    parts = band_parts(np.eye(window), T_S, band, derivative)
+    """(rows, window): real and imaginary parts of `BandSpectrum.parts` over the samples of the window."""
+    parts = BandSpectrum(np.eye(window), T_S).parts(band, derivative)
     return np.vstack([np.real(parts), np.imag(parts)])

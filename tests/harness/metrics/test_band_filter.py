@@ -12,7 +12,7 @@ from driveline.harness.metrics.declaration import Absent
 from driveline.harness.metrics.estimate import estimate_metrics
 from driveline.harness.metrics.frequency_response import amplitude_spectrum, frequency_response
 from driveline.harness.metrics.oscillation import low_passed
-from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts
+from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, BandSpectrum
 
 T_S = 0.002
 T = T_S * np.arange(3000)
@@ -58,10 +58,10 @@ def test_a_filter_in_pieces_gives_what_scipy_gives(at_once: int, ends: int, monk
 @pytest.mark.parametrize("length", [999, 1000, 1009])
 def test_a_spectrum_block_by_block_is_that_of_all_at_once(band, of_slope, length, monkeypatch) -> None:
     x = np.random.default_rng(4).standard_normal(length).cumsum()
-    expected = band_parts(x, T_S, band, of_slope)
+    expected = BandSpectrum(x, T_S).parts(band, of_slope)
     monkeypatch.setattr(spectrum, "MOST_AT_ONCE", length - 1)
     monkeypatch.setattr(spectrum, "BLOCK", 256)
-    found = band_parts(x, T_S, band, of_slope)
+    found = BandSpectrum(x, T_S).parts(band, of_slope)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13 * abs(expected).max())
     assert not np.array_equal(found, expected), "it is computed otherwise"
 

@@ -16,7 +16,7 @@ from driveline.harness.loop.places import T_S
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import at_samples, evaluate
-from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, band_parts, band_rms
+from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, BandSpectrum, band_rms
 from driveline.harness.simulation.simulate import simulate, start
 from driveline.harness.studies.margins.linear_plant import NOISELESS
 
@@ -80,8 +80,8 @@ def test_the_torque_of_the_controller_is_within_the_limits_of_the_bound(name: st
 def test_parts_of_a_band_are_linear_and_their_norm_is_the_rms() -> None:
     x = np.random.default_rng(1).standard_normal((800, 3)).cumsum(axis=0)
     for band, derivative in ((DRIVE_TRAIN, False), (TO_50_HZ, True)):
-        parts = band_parts(x, T_S, band, derivative)
-        together = band_parts(x @ [1.0, 2.0, -3.0], T_S, band, derivative)
+        parts = BandSpectrum(x, T_S).parts(band, derivative)
+        together = BandSpectrum(x @ [1.0, 2.0, -3.0], T_S).parts(band, derivative)
         assert parts @ [1.0, 2.0, -3.0] == pytest.approx(together, rel=1e-9, abs=1e-9 * np.abs(together).max())
         assert np.linalg.norm(parts[:, 0]) == pytest.approx(band_rms(x[:, 0], T_S, band, derivative), rel=1e-12)
 
