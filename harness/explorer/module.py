@@ -33,8 +33,9 @@ from .tables import ROWS, Loop, loop, tables
 HERE = Path(__file__).parent
 C_FILES = [HERE / "c" / name for name in ("page_loop.c", "page_mode.c")]
 TARGET = ("-target", "wasm32-wasi")
-LANES = "-msimd128"
-"""Two numbers at a time, each with its own rounding; every browser of the last years has it."""
+FAST = ("-msimd128", "-flto")
+"""Two numbers at a time, each with its own rounding, as every browser of the last years can; and functions of FMUs
+within the loop that calls them."""
 
 EXPORTS = (
     *("begin", "set", "start_run", "run_steps", "rows", "last_message"),
@@ -222,7 +223,7 @@ def _linked(sources: Mapping[str, Mapping[str, bytes]], head: str, loops: Sequen
 
         def compiled(name: str) -> bytes:
             prefix = f"-DFMI2_FUNCTION_PREFIX={name}_"
-            return compile_in([*zig, *FLAGS, LANES, prefix, "-c", WHOLE, "-o", f"{name}.o"], f"{name}.o", sources[name])
+            return compile_in([*zig, *FLAGS, *FAST, prefix, "-c", WHOLE, "-o", f"{name}.o"], f"{name}.o", sources[name])
 
         folder = Path(temporary)
         for name, made in zip(sources, pool.map(compiled, sources), strict=True):
@@ -230,7 +231,7 @@ def _linked(sources: Mapping[str, Mapping[str, bytes]], head: str, loops: Sequen
         for name, content in own.items():
             (folder / name).write_bytes(content)
         objects = [f"{name}.o" for name in sources]
-        run_compiler([*zig, *FLAGS, *defined, C_FILES[0].name, *objects, *LINKED, "-o", "loop.wasm"], folder)
+        run_compiler([*zig, *FLAGS, *FAST, *defined, C_FILES[0].name, *objects, *LINKED, "-o", "loop.wasm"], folder)
         return (folder / "loop.wasm").read_bytes()
 
 

@@ -83,8 +83,10 @@ KEPT fmi2Status begin(uint32_t number)
         fmi2Component *component = &components[loop->fmus[k]];
         if (*component && fmu->reset(*component) != fmi2OK)
             return fmi2Error;
-        if (!*component)
+        if (!*component) { /* the second: the first is for tools of calibration, and looks in every step what they wrote */
+            fmu->instantiate("first", fmi2CoSimulation, fmu->guid, "", &callbacks, 0, 1);
             *component = fmu->instantiate("page", fmi2CoSimulation, fmu->guid, "", &callbacks, 0, 1);
+        }
         if (!*component)
             return fmi2Error;
     }

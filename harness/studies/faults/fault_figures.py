@@ -19,8 +19,8 @@ from .fault_cases import Case, Plan
 from .fault_injection import Runs
 from .judges import JUDGES
 
-SHARES = LinearSegmentedColormap.from_list("shares", ("#DDEEF8", ORANGE, VERMILION))
-"""From all clean to none; a cell without cases stays white."""
+SHADES = LinearSegmentedColormap.from_list("shares", ("#DDEEF8", ORANGE, VERMILION))
+"""Of a share of cases, from all clean to none; a cell without cases stays white."""
 
 STATUS = {1.0: "off", 2.0: "wheel", 3.0: "no wheel", 4.0: "fallback"}
 """Of the controller."""
@@ -84,7 +84,7 @@ def plot_pairs(outcomes: Sequence[Outcome], title: str, stem: Path) -> list[Path
 def _draw_cells(axes: Axes, heading: str, columns: Sequence[str], rows: Sequence[str], cells: np.ndarray) -> None:
     failed, total = cells[..., 0], cells[..., 1]
     shares = np.ma.masked_where(total == 0, failed / np.maximum(total, 1))
-    axes.pcolormesh(shares, cmap=SHARES, vmin=0.0, vmax=1.0, edgecolors="white", linewidth=0.8)
+    axes.pcolormesh(shares, cmap=SHADES, vmin=0.0, vmax=1.0, edgecolors="white", linewidth=0.8)
     for row, column in zip(*np.nonzero(failed), strict=True):
         in_cell(axes, column, row, f"{failed[row, column]:.0f}", "black", 6.5)
     matrix_axes(axes, columns, rows, heading)
@@ -92,7 +92,7 @@ def _draw_cells(axes: Axes, heading: str, columns: Sequence[str], rows: Sequence
 
 def _legend(figure: Figure, row: Sequence[Axes]) -> None:
     """What the colours mean, below."""
-    colours = ScalarMappable(Normalize(0.0, 100.0), SHARES)
+    colours = ScalarMappable(Normalize(0.0, 100.0), SHADES)
     label = "share of the runs of a cell that are not clean in %; numbers count these runs; white: no run"
     made = figure.colorbar(colours, ax=list(row), location="bottom", label=label, shrink=0.5, aspect=40.0)
     made.outline.set_visible(False)

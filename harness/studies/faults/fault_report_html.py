@@ -5,15 +5,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.colors import to_hex
 
 from ...base.plain_text import printed
-from ...views.colours import COLOURS, ORANGE, VERMILION
+from ...views.colours import COLOURS
 from ...views.page.figures import Figure, figure
 from ...views.page.report import Heading, Row, Section, Table, write_report
 from ...views.page.thinning import thinned
 from ...views.panels import Axis, Curve, Panel
 from .fault_campaign import Outcome, count, coverage, plan_of
-from .fault_figures import case_panels
+from .fault_figures import SHADES, case_panels
 from .fault_injection import FaultRunner
 from .fault_report import HEADINGS, NOT_CLEAN, matrix_rows
 from .judges import JUDGES
@@ -23,9 +24,6 @@ WORST = 6
 
 SHARES = np.linspace(0.0, 100.0, 401)
 """In %, of the cases, at which the distributions are drawn."""
-
-PALETTE = ("#DDEEF8", "#F0DFB9", "#E8C070", ORANGE, "#DE7D00", VERMILION)
-"""From all clean to none."""
 
 
 def report(outcomes: Sequence[Outcome], runner: FaultRunner, provenance: Mapping[str, Any], path: Path) -> None:
@@ -110,7 +108,7 @@ def _matrix(outcomes: Sequence[Outcome]) -> Table:
             failed / total if total else None for failed, total in (count(outcomes, kind, name) for name in names)
         ]
         cells = ["" if share is None else f"{100.0 * share:.0f}" for share in shares]
-        shades = ["" if share is None else PALETTE[round((len(PALETTE) - 1) * share)] for share in shares]
+        shades = ["" if share is None else to_hex(SHADES(share)) for share in shares]
         rows.append(Row([kind, *cells], shades=["", *shades]))
     return Table([Heading("kind"), *(Heading(name, number=True) for name in names)], rows)
 

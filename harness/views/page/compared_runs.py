@@ -30,7 +30,11 @@ DAMPED = "with damping"
 
 
 class Signal(NamedTuple):
-    """One that is drawn of a run without (`off`) or with (`on`) damping."""
+    """One that is drawn of a run without (`off`) or with (`on`) damping.
+
+    Attributes:
+        of_each: it is drawn of every controller, as all curves of that are, instead of the first alone.
+    """
 
     run: str
     name: str
@@ -38,10 +42,11 @@ class Signal(NamedTuple):
     color: str = BLACK
     dashes: Dashes = DASHED
     width: float = 0.7
+    of_each: bool = False
 
 
 def _both_of(name: str) -> list[Signal]:
-    return [Signal("off", name, WITHOUT, *UNDAMPED), Signal("on", name, DAMPED, *CONTROLLERS[0])]
+    return [Signal("off", name, WITHOUT, *UNDAMPED), Signal("on", name, DAMPED, *CONTROLLERS[0], True)]
 
 
 DEMAND = Signal("off", "controller.T_driver", "demand")
@@ -49,7 +54,7 @@ DEMAND = Signal("off", "controller.T_driver", "demand")
 PANELS: Mapping[str, list[Signal]] = {
     "gear torque in N·m": [*_both_of("plant.T_gear"), DEMAND],
     "motor torque in N·m": [
-        Signal("on", "controller.T_ref", f"to the motor, {DAMPED}", *CONTROLLERS[0]),
+        Signal("on", "controller.T_ref", f"to the motor, {DAMPED}", *CONTROLLERS[0], True),
         Signal("on", ADDED, "of it added by the control", GREEN, SOLID, 1.0),
         DEMAND,
     ],
@@ -91,9 +96,9 @@ def run_panels(runs: Runs) -> list[Panel]:
 
 
 def _curves(signal: Signal, runs: Runs) -> Iterator[Curve]:
-    damped, of_each = [name for name in runs if name != WITHOUT], signal.color == CONTROLLERS[0][0]
-    for name in [WITHOUT] if signal.run == "off" else damped if of_each else damped[:1]:
-        look = looks_of(runs)[name] if of_each else signal[3:]
+    damped = [name for name in runs if name != WITHOUT]
+    for name in [WITHOUT] if signal.run == "off" else damped if signal.of_each else damped[:1]:
+        look = looks_of(runs)[name] if signal.of_each else (signal.color, signal.dashes, signal.width)
         yield Curve(runs[name]["time"], _values(signal, runs[name]), signal.label.replace(DAMPED, name), *look)
 
 
