@@ -149,20 +149,20 @@ def plants_table(found: Sequence[Judged]) -> Table:
         signs = [one.balance.correlation for one in its if one.balance.correlation]
         ratios = [each.ratio for each in balanced]
         counts = (len(its), sum(len(one.findings) for one in its), len(balanced))
-        limits = (min(signs), min(ratios), max(ratios), max(one.speed_error for one in its))
+        limits = (min(signs), min(ratios), max(ratios), 3.6 * max(one.speed_error for one in its))
         rows[plant] = (*counts, *limits)
     columns = (
         *(Column(name, decimals=0) for name in ("drives", "findings", "balanced")),
         *map(Column, ("least correlation", "least ratio", "largest ratio")),
-        Column("speed error", "m/s"),
+        Column("speed error", "km/h"),
     )
     return Table("plant", columns, rows)
 
 
 def findings_table(found: Sequence[Judged]) -> Table:
     """How many findings single drives have, and how far the plant that follows is off."""
-    rows = {str(one.case): (len(one.findings), one.speed_error) for one in found}
-    return Table("drive", (Column("findings", decimals=0), Column("speed error", "m/s", 3)), rows)
+    rows = {str(one.case): (len(one.findings), 3.6 * one.speed_error) for one in found}
+    return Table("drive", (Column("findings", decimals=0), Column("speed error", "km/h", 3)), rows)
 
 
 def channels_table(found: Sequence[Judged]) -> Table:

@@ -137,7 +137,7 @@ class RideMetrics(NotebookTable):
         Metric(
             "m/s",
             "rms of simulated less recorded speed",
-            Column("speed\nerror", "m/s", 1.0, 2),
+            Column("speed\nerror", "km/h", 3.6, 2),
         ),
     ]
     absent: Mapping[str, str] = field(default_factory=dict)

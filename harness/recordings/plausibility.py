@@ -88,8 +88,8 @@ SLOW_TIME = Rule(
 FOLLOWING = Rule(
     "following",
     "after the drive: a recorded speed that the simulated car does not keep",
-    f"{FOLLOWED:g} m/s rms without damping",
-    "the force along the road is corrected until 0.1 m/s are reached; 0.16 m/s at most in 200 simulated drives",
+    f"{KMH * FOLLOWED:.2g} km/h rms without damping",
+    "the force along the road is corrected until 0.36 km/h are reached; 0.56 km/h at most in 200 simulated drives",
 )
 
 RULES = (*CHANNEL_RULES, RATE, CAPPED, SIGN, RATIO, OTHER, FAST, SLOW_TIME, FOLLOWING)
@@ -207,8 +207,8 @@ def not_followed(drive: Drive, time: np.ndarray, v: np.ndarray) -> list[Finding]
         return []
     k = int(np.argmax(np.abs(error)))
     odd = (
-        f"is not kept: the simulated car is {error[k]:+.3g} m/s off there and {rms:.2g} m/s rms on the whole; torque, "
-        "speed and car do not belong together"
+        f"is not kept: the simulated car is {KMH * error[k]:+.3g} km/h off there and {KMH * rms:.2g} km/h rms on the "
+        "whole; torque, speed and car do not belong together"
     )
     return [Finding(FOLLOWING, drive.heading("v"), float(drive.time[0] + time[k]), odd)]
 

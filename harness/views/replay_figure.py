@@ -17,7 +17,7 @@ from .figure_style import plot
 from .panels import DOTTED, Axis, Curve, Panel
 from .signal_lines import Line, Look, Runs, column, envelope_of, interval, looks_of
 
-SI = {"v": FileUnit("m/s"), "T_mot": FileUnit("N.m")}
+USUAL_UNITS = {"v": FileUnit("km/h", 1.0 / 3.6), "T_mot": FileUnit("N.m")}
 
 PIECE, PIECES = 6.0, 5
 """Length in s of the roughest pieces, and how many there are."""
@@ -42,14 +42,14 @@ def plot_replay(
         recorded: time in s and speed in m/s of the recording.
         title: of the figure.
         stem: path of the files without their ending.
-        file_units: of `v` and `T_mot` in the recording; None: SI units.
+        file_units: of `v` and `T_mot` in the recording; None: km/h and N.m.
 
     Returns:
         The files written.
     """
     undamped, *others = runs
     t, looks = runs[undamped]["time"], looks_of(runs)
-    v, torque = (file_units or SI)["v"], (file_units or SI)["T_mot"]
+    v, torque = ((file_units or USUAL_UNITS)[name] for name in USUAL_UNITS)
     window = options.clipped(float(t[0]), float(t[-1]))
     ((start, _), *_) = roughest(runs[undamped])
     before = max(start - LEAD, float(t[0]))

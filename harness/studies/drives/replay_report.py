@@ -16,7 +16,7 @@ from ...views.page.figures import Figure, figure
 from ...views.page.report import Heading, Row, Section, Table, of_metrics, write_report
 from ...views.page.thinning import thinned
 from ...views.panels import Axis, Curve, Panel, within
-from ...views.replay_figure import PIECE, SI, roughest, speeds, swings, torques
+from ...views.replay_figure import PIECE, USUAL_UNITS, roughest, speeds, swings, torques
 from ...views.signal_lines import Line, Look, Runs, column, looks_of
 
 SEGMENT = 2048
@@ -96,10 +96,10 @@ def _figures(rides: Rides, recorded: tuple[np.ndarray, np.ndarray], starts: Sequ
     looks = looks_of(runs)
     damped = list(runs)[1]
     panels = [
-        torques(runs, looks, SI["T_mot"]),
-        swings(runs, looks, SI["T_mot"]),
+        torques(runs, looks, USUAL_UNITS["T_mot"]),
+        swings(runs, looks, USUAL_UNITS["T_mot"]),
         Panel("body acceleration in m/s²", [c for name in runs for c in _acceleration(name, looks).of(runs[name])]),
-        speeds(runs[damped], recorded, f"simulated, {damped}", SI["v"]),
+        speeds(runs[damped], recorded, f"simulated, {damped}", USUAL_UNITS["v"]),
     ]
     time = runs[damped]["time"]
     windows = {WHOLE: (float(time[0]), float(time[-1]))}
