@@ -42,6 +42,9 @@ TORQUE = re.compile(r"(?P<prefix>[mkM]?)N[ .-]?m(?P<damping>[ .]?s)?(?P<per>/.+)
 INERTIA = re.compile(r"kg[ .]?m\^?2")
 """N.m, N.m/rad, N.m.s/rad, and kg.m2, with or without dots."""
 
+WITH_UNIT = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?) *([^\d\s.,_].*)")
+"""A number and a unit."""
+
 NESTED = re.compile(r"/\(([^()/]+)/([^()/]+)\)")
 """A quotient below the line: N.m/(rad/s)."""
 
@@ -95,16 +98,16 @@ def factor(unit: str, target_unit: str) -> float:
 
 
 def quantity(text: str, target_unit: str) -> float:
-    """The value in a unit of a text with a number and a unit, such as "15 km/h".
+    """The value in a unit of a text with a number and a unit, such as "15 km/h" or "1887kg".
 
     Raises:
         ValueError: it is no such text, or does not convert; the message is to stand after the text.
     """
-    number, _, unit = text.strip().partition(" ")
-    value = real(number)
-    if value is None or not isfinite(value) or not unit:
+    parts = WITH_UNIT.fullmatch(text.strip())
+    value = real(parts[1]) if parts else None
+    if parts is None or value is None or not isfinite(value):
         raise ValueError("must be a number and a unit")
-    return value * factor(unit, target_unit)
+    return value * factor(parts[2], target_unit)
 
 
 def converts(unit: str, target_unit: str) -> bool:

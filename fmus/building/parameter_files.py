@@ -7,7 +7,7 @@ controller's model of them. What no file names follows (one_car) or keeps its st
 
 import numbers
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -254,18 +254,38 @@ def _quantity(name: str, text: str, unit: str) -> float:
     raise ParameterFileError(f"{name} = {text!r:.40}: it {reason}")
 
 
+SYNONYMS = {
+    **dict.fromkeys(("tyre", "tire"), "wheel"),
+    **dict.fromkeys(("max", "maximum", "peak", "rated"), "largest"),
+    **dict.fromkeys(("weight", "curb", "kerb", "vehicle"), "mass"),
+    **dict.fromkeys(("reduction", "final_drive", "i_total"), "ratio"),
+    **dict.fromkeys(("cd", "c_d", "cw", "c_w", "cx", "drag_coefficient"), "air_drag"),
+    "rotor": "motor",
+    "lash": "backlash",
+    "cog": "gravity",
+}
+"""Words of data sheets, and names that these have, as the descriptions say them."""
+
+
 def _nearest(name: str, known: Owners, others: Collection[str]) -> str:
     """What a name may have been meant to be: what its words describe, of a data sheet first, else what is like it."""
-    words, places = name.lower().split("_"), dict[str, int]()
+    words = name.lower().split("_")
+    meant_words = SYNONYMS.get(name.lower(), "_".join(SYNONYMS.get(word, word) for word in words)).split("_")
+    places = _described(words, known) or _described(meant_words, known)
+    first = [each for each, at in places.items() if at == min(places.values()) and name not in RENAMED]
+    near = f"did you mean {' or '.join(first[:3])}?" if first else meant(name, sorted({*known, *others}))
+    return f"; {near}" if near else ""
+
+
+def _described(words: Sequence[str], known: Owners) -> dict[str, int]:
+    """Names whose descriptions have words that begin with all of these, of a data sheet if there are any, and where."""
+    places: dict[str, int] = {}
     for each, ((_, variable), *_) in known.items():
         described = variable.declaration.description.replace(",", "").split()
         found = [[k for k, of in enumerate(described) if of.startswith(word)] for word in words if len(word) > 2]
         if all(found) and len(found) == len(words):
             places[each] = min(map(min, found))
-    places = {each: at for each, at in places.items() if each in SHEET} or places
-    first = [each for each, at in places.items() if at == min(places.values()) and name not in RENAMED]
-    near = f"did you mean {' or '.join(first[:3])}?" if first else meant(name, sorted({*known, *others}))
-    return f"; {near}" if near else ""
+    return {each: at for each, at in places.items() if each in SHEET} or places
 
 
 def _line(path: Path, name: str) -> int:

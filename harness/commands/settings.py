@@ -9,18 +9,21 @@ from typing import Any
 
 from ..base.known_names import by_name
 from ..loop.places import PLACES, PLANTS
-from ..loop.settings import Settings
+from ..loop.settings import Settings, loop
 from ..views.metrics_table import DAMPINGS
 from .options import OTHERS, Loop
 
 LOG = logging.getLogger(__name__)
 
 
-def settings(args: Loop, plant: str, controller: str, silent: bool = False, **run: Any) -> Settings:
+def settings(
+    args: Loop, plant: str, controller: str, silent: bool = False, one_of_several: bool = False, **run: Any
+) -> Settings:
     """What the options say for a plant and a controller; the FMUs are there then.
 
     Args:
         silent: not to warn of gains, as that was done for another loop.
+        one_of_several: see `harness.loop.given_parameters.built_with`.
         run: fields of the settings that no option of the loop gives.
 
     Raises:
@@ -45,7 +48,7 @@ def settings(args: Loop, plant: str, controller: str, silent: bool = False, **ru
     )
     if not silent:
         warn_of_gains(args.vehicle, args.parameters)
-    return built_with(given, args.vehicle, args.parameters, dict(args.set))
+    return built_with(given, args.vehicle, args.parameters, dict(args.set), one_of_several)
 
 
 def warn_of_gains(vehicle: Path | None, parameters: Path | None) -> None:
@@ -57,7 +60,9 @@ def warn_of_gains(vehicle: Path | None, parameters: Path | None) -> None:
 def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) -> dict[tuple[str, str], Settings]:
     """What the options say for each plant with each controller, by the names of both.
 
-    Of several controllers the file of parameters is for those that have all that it names; the others keep theirs.
+    Of several controllers the file of parameters is for those that have all that it names, and a value of --set for
+    those that have the parameter; the others keep theirs. Where an FMU of somebody else stands beside blocks of the
+    project in a place, --map is for that FMU.
 
     Args:
         plants: none: all of the project.
@@ -65,24 +70,38 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
 
     Raises:
         WiringError, DrivelineError, ParameterFileError: as of `settings`; two plants or controllers have the same name,
-            or the file is for none of them.
+            or the file or a value is for none of them.
     """
+    from ..cosimulation.parameter_changes import parted
+    from ..cosimulation.wiring import find, fit, require
     from ..loop.given_parameters import NotTaken
 
     plants = list(by_name(plants or PLANTS, "plant").values())
     each = by_name(controllers or PLACES["controller"], "controller")
-    found = {}
+    blocks = {"plant": plants, "controller": list(each.values())}
+    mapped = [place for place, names in blocks.items() if not set(names) <= set(PLACES[place])]
+    several, found = len(each) > 1, dict[tuple[str, str], Settings]()
     for plant in plants:
         refusals = []
         for name, controller in each.items():
+            ours = [p for p, block in (("plant", plant), ("controller", controller)) if block in PLACES[p]]
+            theirs = {n: own for n, own in args.map.items() if n.partition(".")[0] not in {*ours} & {*mapped}}
+            own = dataclasses.replace(args, map=theirs)
             try:
-                made = settings(args, plant, controller, silent=bool(found))
+                made = settings(own, plant, controller, bool(found), several)
             except NotTaken as refusal:
                 refusals.append(refusal)
                 if len(refusals) == len(each):
                     raise refusals[0] from None
-                made = settings(dataclasses.replace(args, parameters=None), plant, controller, silent=True)
+                made = settings(dataclasses.replace(own, parameters=None), plant, controller, True, several)
             found[made.plant_name, name] = made
+    for parameter in dict(args.set) if several else ():
+        lacking = dict.fromkeys(name for (_, name), made in found.items() if parameter not in made.parameters)
+        if len(lacking) == len(each):
+            fits = (fit(loop(made)) for made in found.values())
+            require(line for each in fits for line in find(parted(parameter)[0], "parameter", each.interfaces)[1])
+        elif lacking:
+            LOG.warning("--set %s: %s has no such parameter and runs without it", parameter, ", ".join(lacking))
     return found
 
 

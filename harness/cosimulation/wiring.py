@@ -186,7 +186,8 @@ def find(name: str, causality: str, interfaces: Mapping[str, Interface]) -> tupl
         return None, []
     if variable is None:
         known = [v.name for v in interface.of_causality(causality)]
-        return None, [f"{name}: {file} has no {causality} {variable_name}; {nearest(variable_name, known)}"]
+        near = nearest(variable_name, known) if known else "it has none"
+        return None, [f"{name}: {file} has no {causality} {variable_name}; {near}"]
     if variable.causality != causality:
         return None, [f"{name}: in {file} {variable_name} is of causality {variable.causality}; it must be {causality}"]
     return variable, []

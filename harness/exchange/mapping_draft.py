@@ -5,7 +5,7 @@ causality and unit must fit.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from json import dumps
 from typing import NamedTuple
 
@@ -79,7 +79,24 @@ def draft(interface: Interface, place: str) -> list[Proposal]:
         sure = bool(left) and left[0][0] == 1.0 and [share for share, _ in left].count(1.0) == 1
         taken |= {theirs} if theirs else set()
         proposals[name] = Proposal(ports[name][0], theirs, sure)
-    return [proposals[name] for name in ports]
+    return [_last_of_its_kind(name, ports, proposals, found) for name in ports]
+
+
+def _last_of_its_kind(
+    name: str,
+    ports: Mapping[str, tuple[Port, str]],
+    proposals: Mapping[str, Proposal],
+    found: Mapping[str, Sequence[tuple[float, str]]],
+) -> Proposal:
+    """The proposal for a name; where it alone of a causality is left, and one variable that fits, that one."""
+
+    def left(causality: str) -> list[str]:
+        return [n for n, (_, of) in ports.items() if of == causality and n not in OPTIONAL and not proposals[n].theirs]
+
+    taken = {each.theirs for each in proposals.values()}
+    fitting = [theirs for _, theirs in found[name] if theirs not in taken]
+    alone = left(ports[name][1]) == [name] and len(fitting) == 1
+    return proposals[name]._replace(theirs=fitting[0]) if alone else proposals[name]
 
 
 def as_toml(proposals: list[Proposal], file: str, place: str) -> str:

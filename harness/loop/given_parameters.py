@@ -8,8 +8,9 @@ from pathlib import Path
 from ...fmus.unit_conversion import factor
 from ..base.errors import DrivelineError, WiringError
 from ..cosimulation.interface import Interface, unit_of
+from ..cosimulation.parameter_changes import parted
 from ..cosimulation.system import System
-from ..cosimulation.wiring import fit, out_of_bounds, require
+from ..cosimulation.wiring import find, fit, out_of_bounds, require
 from .built_fmus import built
 from .places import PLANTS, ROAD_LOAD
 from .settings import Settings, loop, own_frequency
@@ -22,10 +23,17 @@ class NotTaken(DrivelineError):
 
 
 def built_with(
-    given: Settings, vehicle: Path | None, parameters: Path | None, assigned: Mapping[str, float]
+    given: Settings,
+    vehicle: Path | None,
+    parameters: Path | None,
+    assigned: Mapping[str, float],
+    one_of_several: bool = False,
 ) -> Settings:
     """What `built` makes of settings, with what the files name, for every instance that has it, and with the values of
     `instance.parameter`, which go before.
+
+    Args:
+        one_of_several: the controller is; values of parameters that it does not have are left out.
 
     Raises:
         WiringError: the FMUs do not have a parameter, or not with that value or in that unit.
@@ -37,6 +45,10 @@ def built_with(
     made = built(given)
     system = loop(made)
     values, car, frequency = _of_files(system, vehicle, parameters) if vehicle or parameters else ({}, {}, None)
+    if one_of_several:
+        known = fit(system).interfaces
+        lacking = [n for n in assigned if n.startswith("controller.") and not find(parted(n)[0], "parameter", known)[0]]
+        assigned = {name: value for name, value in assigned.items() if name not in lacking}
     made = dataclasses.replace(made, parameters=values | dict(assigned), road_load=car, frequency=frequency)
     require(out_of_bounds(fit(system, parameters=made.parameters), made.parameters))
     return made

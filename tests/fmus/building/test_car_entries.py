@@ -67,6 +67,7 @@ def test_all_that_follows_tells_from_what() -> None:
 
 
 def test_a_car_has_all_its_entries() -> None:
+    assert car({"m": "1887kg"}) == car({"m": "1.887 t"}) == car({"m": 1887.0})
     assert car()["k_s"] == 25800.0
     assert car({"m": 2900.0})["F_z0"] == 17000.0
     with pytest.raises(ParameterFileError, match=r"C = 300 N\.m/rad: k_s does not follow"):

@@ -5,9 +5,9 @@ import pytest
 from driveline.fmus.errors import ParameterFileError
 from driveline.harness.base.errors import DrivelineError, WiringError
 from driveline.harness.commands.cli import main
-from driveline.harness.commands.settings import settings
+from driveline.harness.commands.settings import all_settings, settings
 from tests import ROOT
-from tests.foreign import build_car
+from tests.foreign import SMALLEST_CONTROLLER, build_car, build_relay
 from tests.harness.commands import given as record
 
 VAN = str(ROOT / "examples" / "cars" / "van.toml")
@@ -87,6 +87,29 @@ def test_a_parameter_of_the_same_name_in_another_unit_is_refused_unless_it_is_ma
             WiringError, match=r"plant\.m is in m, which does not convert into kg, the unit of the file"
         ):
             given("--vehicle", VAN, *mapped, plant=odd)
+
+
+def test_of_several_controllers_a_value_and_a_mapping_are_for_those_that_have_them(native, tmp_path, caplog):
+    mine = build_relay(tmp_path, SMALLEST_CONTROLLER)
+    run = ["compare", "--plant", "TwoMassDriveline", "--fmus", str(native.parent), "--build", "native"]
+    both = ["--controller", str(mine), "--controller", "DampingController", "--map", "controller.T_ref=T_ref"]
+
+    def parameters(*options):
+        args = record(*run, *both, *options)
+        found = all_settings(args, args.plant, args.controller)
+        return {name: (made.parameters, made.mapping) for (_, name), made in found.items()}
+
+    given = parameters("--set", "controller.k_d=1.2", "--set", "motor.tau=0.004", "--set", "controller.k_d@1=2")
+    common = {"motor.tau": 0.004}
+    assert given["SmallestController"] == (common, {"controller.T_ref": "T_ref"})
+    assert given["DampingController"] == ({"controller.k_d": 1.2, "controller.k_d@1": 2.0, **common}, {})
+    assert "--set controller.k_d: SmallestController has no such parameter and runs without it" in caplog.text
+    with pytest.raises(
+        WiringError, match=r"(?s)SmallestController\.fmu has no parameter k_e; it has none.*did you mean"
+    ):
+        parameters("--set", "controller.k_e=1")
+    with pytest.raises(WiringError, match=r"controller\.k_d = 1e\+06: DampingController\.fmu takes"):
+        parameters("--set", "controller.k_d=1e6")
 
 
 @pytest.mark.slow

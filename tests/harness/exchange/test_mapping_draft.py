@@ -12,7 +12,7 @@ from driveline.harness.cosimulation.mapping import parsed, read
 from driveline.harness.exchange.mapping_draft import as_toml, draft, words
 from driveline.harness.loop.places import PLACES
 from driveline.harness.loop.settings import settings
-from tests.foreign import tampered
+from tests.foreign import SMALLEST_CONTROLLER, build_relay, tampered
 
 NAMES = {
     "T_mot": "tqMot", "T_brake": "BrakeTorque", "slope": "grade", "v_0": "v0", "T_0": "tq_init", "omega_1": "nMot",
@@ -50,8 +50,17 @@ def test_what_is_not_sure_is_marked_and_what_is_missing_is_named(native: Path, t
     other = tampered(native / "DampingController.fmu", tmp_path / "c.fmu", change)
     text = as_toml(draft(Interface(other), "controller"), other.name, "controller")
     assert 'T_driver = "torque_request_raw"  # in N.m, NOT SURE' in text
+    assert 'T_ref = "command"' not in text, "T_damp and others fit as well"
     assert "# missing, and no run goes without: T_ref" in text
     assert "optional" not in text
+
+
+def test_the_last_output_that_fits_is_proposed(tmp_path: Path) -> None:
+    script = tmp_path / "other.py"
+    script.write_text(SMALLEST_CONTROLLER.read_text(encoding="utf-8").replace("T_ref", "out"), encoding="utf-8")
+    proposals = draft(Interface(build_relay(tmp_path, script)), "controller")
+    found = {each.port.variable: (each.theirs, each.sure) for each in proposals if each.theirs}
+    assert found == {"T_driver": ("T_driver", True), "omega_1_meas": ("omega_1_meas", True), "T_ref": ("out", False)}
 
 
 def test_a_draft_is_what_runs_take(theirs: Path, native: Path, tmp_path: Path, capsys: Any) -> None:
@@ -60,6 +69,16 @@ def test_a_draft_is_what_runs_take(theirs: Path, native: Path, tmp_path: Path, c
     given = ["--manoeuvre", "tipin15", "--plant", str(theirs), "--build", "native", "--fmus", str(native.parent)]
     assert main(["simulate", *given, "--map", str(file), "--output", str(tmp_path / "out"), "--quiet"]) == 0
     assert settings(mapping=str(file)).mapping == parsed([str(file)]) == {f"plant.{a}": b for a, b in NAMES.items()}
+    wrong = ["--map", "plant.T_geer=Shaft.tau", "--map", "plant.x=y", "--output", str(tmp_path / "none")]
+    capsys.readouterr()
+    assert main(["simulate", *given, "--map", str(file), *wrong]) == 2
+    err = capsys.readouterr().err
+    assert "plant.T_geer=Shaft.tau: nothing in the loop is called plant.T_geer; did you mean T_gear" in err
+    assert "plant.x=y: nothing in the loop is called plant.x; known are T_mot, omega_1, " in err
+    controller = str(build_relay(tmp_path, SMALLEST_CONTROLLER))
+    assert main(["map", controller, "--place", "can", "--output", str(tmp_path / "none")]) == 2
+    assert "nothing in it fits a can, which has omega_wheel_L, " in capsys.readouterr().err
+    assert not (tmp_path / "none").exists()
     assert main(["map", str(tmp_path / "no.fmu")]) == 2
     assert capsys.readouterr().err.endswith(f"driveline map: there is no FMU {tmp_path / 'no.fmu'}\n")
 
