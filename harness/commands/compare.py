@@ -50,7 +50,7 @@ def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
     from ..design.unknowns import unknowns_line
     from ..manoeuvres.drivable import require_possible
-    from ..studies.compare.compare import cases, loops_of, rows_of, run_cases, write_figures, write_tables
+    from ..studies.compare.compare import RUNS, cases, loops_of, rows_of, run_cases, write_tables
     from ..studies.compare.compare_report import report
     from ..views.signals_file import signals_path
     from ..views.terminal import print_runs
@@ -63,18 +63,16 @@ def run(args: Arguments) -> int:
     systems = {" with ".join(key): made for key, made in given.items()}
     same: dict[str, Any] = {name: distinguishing(each) for name, each in systems.items()}
     same |= {"manoeuvres": list(manoeuvres)} | requested.digests | args.other_format
-    loops, folder = loops_of(given), args.output / "runs"
+    loops, folder = loops_of(given), args.output / RUNS
     signals = {
         case: signals_path(folder / case.file_name, args.format) for case in cases(plants, list(manoeuvres), names)
     }
     with job(args, args.output / "compare.json", same, systems, [args.output / name for name in TABLES], read) as made:
         require_possible(*requested, made.fits, systems)
         made.begin(*signals.values(), *(path.with_suffix(".json") for path in signals.values()))
-        outcomes = run_cases(list(signals), folder, loops, manoeuvres, args.format)
+        outcomes, figures = run_cases(list(signals), args.output, loops, manoeuvres, args.format, options)
         title, rows = dampings(names), rows_of(outcomes)
-        made.wrote(
-            *write_tables(outcomes, args.output, title), *write_figures(outcomes, args.output, options, manoeuvres)
-        )
+        made.wrote(*write_tables(outcomes, args.output, title), *figures)
         for case, path in signals.items():
             _record(made, case, path, loops[case.plant, case.controller], manoeuvres[case.manoeuvre], read)
         for provenance, path in made.reports():

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 from ...base.errors import DrivelineError
 from ...base.known_names import by_name
-from ...base.progress import progress
 from ...cosimulation.results import Results
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
@@ -27,6 +26,9 @@ from ...views.signals_file import write_signals
 
 DRAWN = ("tipin15", "tipin50", "tipout", "launch", "drive")
 """Of the manoeuvres that are compared unless others are named, those with a figure."""
+
+RUNS = "runs"
+"""The folder of the signals of each run."""
 
 Manoeuvres = Mapping[str, Manoeuvre]
 """By name."""
@@ -121,18 +123,44 @@ def run_case(
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
+class _Together(NamedTuple):
+    """Cases of one manoeuvre on one plant."""
+
+    cases: Sequence[Case]
+
+    def __str__(self) -> str:
+        return f"{self.cases[0].manoeuvre} on {self.cases[0].plant_name}"
+
+
 def run_cases(
-    todo: Sequence[Case], output: Path, loops: Loops, manoeuvres: Manoeuvres = MANOEUVRES, format: str = "csv"
-) -> list[Outcome]:
-    """Runs the cases in parallel; their outcomes in the order of the cases.
+    todo: Sequence[Case],
+    output: Path,
+    loops: Loops,
+    manoeuvres: Manoeuvres = MANOEUVRES,
+    format: str = "csv",
+    options: FigureOptions = PLAIN,
+) -> tuple[list[Outcome], list[Path]]:
+    """Runs the cases in parallel and draws their figures where they have run; gives their outcomes in the order of the
+    cases, and the files of figures.
 
     Args:
-        output: folder for the files of signals.
+        output: folder for the figures, and in it that for the files of signals, `RUNS`.
         format: of those files, one of `harness.views.signals_file.FORMATS`.
+        options: of the figures, which are files.
     """
     from ...simulation.many_runs import run_many  # one run does without
 
-    return run_many(partial(run_case, output=output, loops=loops, manoeuvres=manoeuvres, format=format), todo)
+    each = [_Together(list(group)) for _, group in groupby(todo, lambda case: case[:2])]
+    made = run_many(partial(_made_together, (output, loops, manoeuvres, format), options), each)
+    return [one for outcomes, _ in made for one in outcomes], [file for _, files in made for file in files]
+
+
+def _made_together(
+    given: tuple[Path, Loops, Manoeuvres, str], options: FigureOptions, runs: _Together
+) -> tuple[list[Outcome], list[Path]]:
+    output, loops, manoeuvres, format = given
+    outcomes = [run_case(case, output / RUNS, loops, manoeuvres, format) for case in runs.cases]
+    return outcomes, figure(outcomes, output, options, manoeuvres)
 
 
 def together(outcomes: Iterable[Outcome]) -> list[list[Outcome]]:
@@ -154,23 +182,19 @@ def write_tables(outcomes: Sequence[Outcome], folder: Path, title: str = DAMPING
     return [table, metrics]
 
 
-def write_figures(
+def figure(
     outcomes: Sequence[Outcome], folder: Path, options: FigureOptions = PLAIN, manoeuvres: Manoeuvres = MANOEUVRES
 ) -> list[Path]:
-    """Draws steps close up and all else whole, but for the usual manoeuvres that are not `DRAWN`; returns the files."""
-    from ...views.drive_figure import plot_drive  # not for the workers, which draw nothing
+    """Draws the runs of one manoeuvre on one plant, a step close up and all else whole, but for the usual manoeuvres
+    that are not `DRAWN`; returns the files."""
+    case = outcomes[0].case
+    manoeuvre, plant = manoeuvres[case.manoeuvre], case.plant_name
+    usual = case.manoeuvre in COMPARED and manoeuvre.description == MANOEUVRES[case.manoeuvre].description
+    if usual and case.manoeuvre not in DRAWN:
+        return []
+    from ...views.drive_figure import plot_drive  # not for those who draw nothing
     from ...views.step_figure import plot_step
 
-    def is_drawn(name: str) -> bool:
-        usual = name in COMPARED and manoeuvres[name].description == MANOEUVRES[name].description
-        return name in DRAWN or not usual
-
-    drawn, files = [each for each in together(outcomes) if is_drawn(each[0].case.manoeuvre)], list[Path]()
-    with progress(len(drawn), "drawing") as done:
-        for k, each in enumerate(drawn):
-            done(k)
-            manoeuvre, plant = manoeuvres[each[0].case.manoeuvre], each[0].case.plant_name
-            plot = plot_drive if manoeuvre.dT is None else plot_step
-            runs = {outcome.case.controller_name: outcome.results for outcome in each}
-            files += plot(runs, manoeuvre, plant, folder / f"{plant}_{manoeuvre.name}", options)
-    return files
+    plot = plot_drive if manoeuvre.dT is None else plot_step
+    runs = {outcome.case.controller_name: outcome.results for outcome in outcomes}
+    return plot(runs, manoeuvre, plant, folder / f"{plant}_{manoeuvre.name}", options)

@@ -8,10 +8,17 @@ import pytest
 
 import driveline
 from driveline.harness.base.errors import DrivelineError
-from driveline.harness.base.progress import part
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
-from driveline.harness.studies.compare.compare import Outcome, cases, loops_of, run_cases, write_figures, write_tables
+from driveline.harness.studies.compare.compare import (
+    Outcome,
+    cases,
+    figure,
+    loops_of,
+    run_cases,
+    together,
+    write_tables,
+)
 from driveline.harness.views import drive_figure, step_figure
 
 OURS = PLACES["controller"][0]
@@ -32,11 +39,9 @@ def test_each_manoeuvre_has_a_figure_but_five_of_the_usual_ten(monkeypatch, tmp_
     metrics: Any = None
     results: Any = None
     names = ["tipin15", "tipin15r", "creep", "drive", "prbs", "hill_start", "regen"]
-    shares: list[float] = []
-    with part(shares.append, 0.0):
-        write_figures([Outcome(each, metrics, results) for each in cases(["A"], names, ["B"])], tmp_path)
+    for runs in together(Outcome(each, metrics, results) for each in cases(["A"], names, ["B"])):
+        figure(runs, tmp_path)
     assert drawn == [("step", "A_tipin15"), ("drive", "A_drive"), ("drive", "A_hill_start"), ("step", "A_regen")]
-    assert shares == [0.0, 0.25, 0.5, 0.75]
 
 
 def test_plants_and_manoeuvres_of_the_same_name_are_refused():
@@ -85,9 +90,9 @@ def compared(native, tmp_path_factory):
     """Folder with what a comparison of one step on both plants writes."""
     folder = tmp_path_factory.mktemp("compare")
     loops = loops_of({(plant, OURS): Settings(plant=plant, folder=native.parent) for plant in PLANTS})
-    outcomes = run_cases(cases(PLANTS, ["tipin15"], [OURS]), folder / "runs", loops)
+    outcomes, figures = run_cases(cases(PLANTS, ["tipin15"], [OURS]), folder, loops)
+    assert figures == [folder / f"{plant}_tipin15.png" for plant in PLANTS]
     write_tables(outcomes, folder)
-    write_figures(outcomes, folder)
     return folder
 
 
