@@ -97,7 +97,7 @@ int fmi2SetReal(Component c, const Reference r[], size_t n, const double values[
 }
 
 int fmi2GetDirectionalDerivative(Component c, const Reference u[], size_t nu, const Reference k[], size_t nk,
-                                 const double dk[], double du[]) { return 3; }
+                                 const double dk[], double du[]) { IN_DIRECTIONAL; return 3; }
 int fmi2SetRealInputDerivatives(Component c, const Reference r[], size_t n, const int o[], const double v[]) { return 3; }
 int fmi2GetRealOutputDerivatives(Component c, const Reference r[], size_t n, const int o[], double v[]) { return 3; }
 int fmi2CancelStep(Component c) { return 3; }

@@ -12,6 +12,7 @@ from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from ...base.plain_text import plain
 from ...cosimulation.interface import Interface
+from .archive_rules import EXTENSIONS
 from .document import document
 from .rule import Clause, Rules, Severity
 
@@ -69,17 +70,26 @@ def sources(interface: Interface) -> Iterator[str]:
 
 
 @CONTENTS_RULES.rule(
-    "binary-folder", Severity.ERROR, "binaries are in the folder of their version of FMI", Clause("2.3", "2.5.1.4.1")
+    "binary-folder", Severity.ERROR, "binaries are where their version of FMI has them", Clause("2.3", "2.5.1.4")
 )
 def binary_folder(interface: Interface) -> Iterator[str]:
-    """Those that stand where the other version has them; hosts other than ours do not find them."""
+    """Those that stand where the other version has them, which hosts other than ours do not find, and folders with
+    libraries of which none has the name of the FMU."""
     folder, other = fmpy.platform, fmpy.platform_tuple
     if interface.fmi == 3:
         folder, other = other, folder
-    file = f"{interface.identifier}{fmpy.sharedLibraryExtension}"
-    names = _names(interface.path)
-    if f"binaries/{folder}/{file}" not in names and f"binaries/{other}/{file}" in names:
-        yield f"binaries/{other}/{file} should be in binaries/{folder}"
+    names = [PurePosixPath(name) for name in _names(interface.path)]
+    libraries = [name for name in names if name.match("binaries/*/*") and name.suffix in EXTENSIONS]
+    kinds = document(interface).root.iterfind("*[@modelIdentifier]")
+    for identifier in dict.fromkeys(kind.get("modelIdentifier", "") for kind in kinds):
+        file = f"{identifier}{fmpy.sharedLibraryExtension}"
+        misplaced = PurePosixPath("binaries", other, file)
+        if PurePosixPath("binaries", folder, file) not in libraries and misplaced in libraries:
+            yield f"{misplaced} should be in binaries/{folder}"
+        for place, suffix in sorted({(library.parent, library.suffix) for library in libraries}):
+            there = [library.stem for library in libraries if (library.parent, library.suffix) == (place, suffix)]
+            if identifier not in there and not (suffix == ".dll" and identifier.lower() in map(str.lower, there)):
+                yield f"{place} has no {identifier}{suffix}"
 
 
 @CONTENTS_RULES.rule(

@@ -27,6 +27,13 @@ REALS = ("Real", "Float32", "Float64")
 
 DOUBLES = ("Real", "Float64")
 
+CALLED_IN_FMI2 = {
+    "canGetAndSetFMUState": "canGetAndSetFMUstate",
+    "canSerializeFMUState": "canSerializeFMUstate",
+    "providesDirectionalDerivatives": "providesDirectionalDerivative",
+}
+"""Capabilities by the names that they have in FMI 3.0."""
+
 TYPES_OF_FMI2 = ("Real", "Integer", "Boolean", "String", "Enumeration")
 
 TRUE = ("true", "1")
@@ -89,6 +96,11 @@ class Document:
             declared.get("name"): declared[0] if self.fmi == 2 and len(declared) else declared
             for declared in self.root.iterfind("TypeDefinitions/*")
         }
+
+    def claims(self, capability: str, *kinds: str) -> bool:
+        """Whether it claims a capability, by its name in FMI 3.0, for one of these kinds; none given: for any."""
+        name = CALLED_IN_FMI2.get(capability, capability) if self.fmi == 2 else capability
+        return any(kind.get(name) in TRUE for kind in self.root if not kinds or kind.tag in kinds)
 
     def unknowns(self, section: str) -> list[Unknown]:
         """Those of a section, of SECTIONS."""

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from ctypes import c_double, c_int
 from math import inf
+from typing import Any
 
 from fmpy.fmi3 import fmi3ValueReference
 from fmpy.model_description import ModelDescription, ModelVariable
@@ -117,9 +118,18 @@ class EventHost(Host):
 
 
 @contextmanager
-def hosted(fmu: Unpacked, name: str = "checked") -> Iterator[Host]:
-    """In event mode if the FMU has clocks."""
-    events = has_clocks(fmu.interface.description)
-    with instantiated(name, fmu, **({"eventModeUsed": True} if events else {})) as instance:
+def stepped(fmu: Unpacked, name: str = "checked", **options: Any) -> Iterator[Instance]:
+    """An instance that is stepped, with event mode if the FMU has clocks: some of them demand it."""
+    if has_clocks(fmu.interface.description):
+        options["eventModeUsed"] = True
+    with instantiated(name, fmu, **options) as instance:
+        yield instance
+
+
+@contextmanager
+def hosted(fmu: Unpacked, name: str = "checked", **options: Any) -> Iterator[Host]:
+    """In event mode if the FMU has clocks, or the options of fmi3InstantiateCoSimulation say so."""
+    events = has_clocks(fmu.interface.description) or options.get("eventModeUsed")
+    with stepped(fmu, name, **options) as instance:
         yield EventHost(instance) if events else Host(instance)
         instance.call("terminate")

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from math import isfinite
 
 from ...cosimulation.unpacked_fmu import Unpacked
+from .document import document
 from .exchange_host import ExchangeHost, integrated
 from .rule import Clause, Rules, Severity
 
@@ -95,8 +96,7 @@ def repeats_after_reset(fmu: Unpacked) -> Iterator[str]:
 )
 def states_are_restored(fmu: Unpacked) -> Iterator[str]:
     """Time, states and derivatives of a saved state."""
-    kind = fmu.interface.description.modelExchange
-    if kind is None or not kind.canGetAndSetFMUstate:
+    if not document(fmu.interface).claims("canGetAndSetFMUState", "ModelExchange"):
         return
     with integrated(fmu) as host:
         host.start()

@@ -9,7 +9,7 @@ from ...base.errors import SimulationError
 from ...cosimulation.instance import Instance, instantiated
 from ...cosimulation.unpacked_fmu import Unpacked
 from .document import REALS, Declared, Document, Unknown, accessor, document
-from .event_host import has_clocks, hosted
+from .event_host import has_clocks, hosted, stepped
 from .exchange_host import integrated
 
 MOST_KNOWNS, MOST_UNKNOWNS = 60, 200
@@ -35,12 +35,15 @@ class Probe(NamedTuple):
         knowns: what may be set then.
         unknowns: what follows, each with the entry of ModelStructure.
         put: sets one of the knowns.
+        at_once: whether the unknowns must follow at once. At a communication point FMI forbids to read before the next
+            step what was set (2.0: section 4.2.4; 3.0: 4.2.1); FMUs that compute anew all the same can be probed.
     """
 
     instance: Instance
     knowns: Sequence[Declared]
     unknowns: Sequence[tuple[Declared, Unknown]]
     put: Callable[[Declared, float], None]
+    at_once: bool = True
 
     def read(self) -> list[float]:
         """The values of the unknowns."""
@@ -132,7 +135,8 @@ def _stepping(fmu: Unpacked) -> Iterator[Probe]:
         host.start()
         host.run(STEPS)
         knowns = [] if host.ended else _inputs(found, fmu.interface.rates.values())
-        yield Probe(host.instance, knowns, _listed(found, ["Outputs"]), lambda known, v: put(host.instance, known, v))
+        unknowns = _listed(found, ["Outputs"])
+        yield Probe(host.instance, knowns, unknowns, lambda known, v: put(host.instance, known, v), at_once=False)
 
 
 @contextmanager
@@ -161,8 +165,8 @@ def elsewhere(fmu: Unpacked) -> Iterator[Probe]:
 def initialized(fmu: Unpacked) -> Iterator[Instance]:
     """An instance of the FMU in initialization mode."""
     default = fmu.interface.description.defaultExperiment
-    exchanging = fmu.interface.description.coSimulation is None
-    with instantiated("checked", fmu, exchanging=exchanging) as instance:
+    exchanges = fmu.interface.description.coSimulation is None
+    with instantiated("checked", fmu, exchanging=True) if exchanges else stepped(fmu) as instance:
         instance.call("start", float(default.startTime or 0.0) if default else 0.0, None)
         yield instance
 

@@ -2,6 +2,7 @@
 
 import os
 import re
+import subprocess
 import sys
 import tempfile
 from xml.etree import ElementTree
@@ -11,12 +12,17 @@ import pytest
 
 from driveline.fmus.building.builds import sender_builder
 from driveline.fmus.catalogue import FMUS
+from driveline.fmus.native.compiler import host_compiler
 from driveline.harness.base.errors import DrivelineError
+from driveline.harness.cosimulation.description import KINDS
+from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.cosimulation.limits import Limits
+from driveline.harness.cosimulation.unpacked_fmu import unpacked as opened
 from driveline.harness.exchange.compliance.behaviour_rules import BEHAVIOUR_RULES
 from driveline.harness.exchange.compliance.check import check
 from driveline.harness.exchange.compliance.claim_rules import CLAIM_RULES, STEPPING_CLAIM_RULES
 from driveline.harness.exchange.compliance.junit import junit
+from driveline.harness.exchange.compliance.probe import initialized
 from driveline.harness.exchange.compliance.rule import Rule, Severity
 from driveline.harness.loop.places import PLANTS
 from tests.foreign import RELAY, build_relay, tampered
@@ -74,6 +80,9 @@ def test_an_fmu_with_clocks_is_run_in_event_mode_or_it_is_said_that_it_was_not(s
     verdicts = list(check(sender))
     assert [v for v in verdicts if v.problems] == []
     assert {v.rule for v in verdicts if v.tried} >= {rule.name for rule in BEHAVIOUR_RULES}
+    with opened(Interface(sender, kinds=list(KINDS))) as fmu, initialized(fmu) as instance:
+        instance.call("exitInitializationMode")
+        instance.call("updateDiscreteStates")  # which is refused where event mode is not used
     path = tampered(sender, tmp_path / "no.fmu", lambda xml: xml.replace('hasEventMode="true"', 'hasEventMode="false"'))
     verdicts = {v.rule: v for v in check(path)}
     assert verdicts["kind"].problems == ["it has clocks, but no event mode, so it was not run in co-simulation"]
@@ -264,8 +273,17 @@ def test_a_symbol_of_a_library_that_is_not_named_is_found(tmp_path, fmi):
     wants = {"fmi": fmi, "IN_INSTANTIATE": "now = 0.0 * acos(now)"}
     assert "symbols" not in broken(build_stranger(tmp_path, "linked", **wants))
     found = broken(build_stranger(tmp_path, libraries=[], **wants))
-    assert found["symbols"] == ("error", "stranger.so needs acos, which no library has that it names")
+    assert found["symbols"] == ("warning", "stranger.so needs acos, which no library has that it names")
     assert "runs" not in found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the rule is for binaries of Linux")
+def test_a_library_that_is_not_here_is_named_without_the_symbols_that_it_may_have(tmp_path):
+    command = [host_compiler(), "-shared", "-o", tmp_path / "libfar.so", "-x", "c", "-"]
+    subprocess.run(command, input=b"int far(void) { return 0; }", check=True)
+    path = build_stranger(tmp_path, libraries=["-lm", f"-L{tmp_path}", "-lfar"], IN_RESET="far()")
+    (tmp_path / "libfar.so").unlink()
+    assert broken(path)["symbols"] == ("warning", "stranger.so needs libfar.so, which is not here, nor in the FMU")
 
 
 ENDS = {"IN_DO_STEP": "if (time > 0.0105) return 2"}
@@ -298,6 +316,28 @@ def test_many_short_calls_are_not_one_that_hangs(tmp_path):
     assert "runs" not in broken(path, quick=True, limits=Limits(call=0.3))
 
 
+@pytest.mark.parametrize("exchanged", ["", 'intermediateUpdate="true"'])
+def test_intermediate_updates_are_asked_for_if_there_is_something_to_exchange(tmp_path, exchanged):
+    path = build_stranger(tmp_path, fmi=3)
+    claimed = {
+        '"stranger" can': '"stranger" providesIntermediateUpdate="true" can',
+        'name="v"': f'name="v" {exchanged}',
+    }
+    for old, new in claimed.items():
+        path = replaced(path, tmp_path, old, new).rename(tmp_path / "claims.fmu")
+    assert bool(exchanged) == ("it has called no intermediate update" in "".join(findings(path)))
+
+
+def test_derivatives_at_a_communication_point_are_compared_where_values_are_computed_anew(tmp_path):
+    """FMI forbids to read before the next step what was set: an FMU may give out what it has computed in the last."""
+    asks = {"IN_DIRECTIONAL": "du[0] = 1.0; return 0"}
+    for name, follows, found in (("kept", "", False), ("anew", "if (r[0] >= KEPT) values[0] = 3.0 * kept[0]", True)):
+        path = build_stranger(tmp_path, name, IN_GET_REAL=follows, **asks)
+        claim = r'\1 providesDirectionalDerivative="true"'
+        path = replaced(path, tmp_path, r'(modelIdentifier="stranger")', claim)
+        assert ("directional-derivatives" in broken(path)) is found
+
+
 def test_what_is_not_tried_after_a_crash_is_said(tmp_path):
     path = build_stranger(tmp_path, IN_DO_STEP="exit(0)")
     names = STEPPED - {"runs", "reset"}
@@ -320,6 +360,24 @@ def test_what_cannot_run_here_is_a_note_and_not_tried(tmp_path):
     assert "so it was not run; there are: " in verdicts["platform"].problems[0]
     assert not any(verdicts[rule.name].tried for rule in BEHAVIOUR_RULES)
     assert [v for v in verdicts.values() if v.severity != "note" and v.problems] == []
+
+
+@pytest.mark.parametrize(
+    ("places", "missing"),
+    [
+        (["win64/stranger.dll", "win64/other.dll"], []),
+        (["win64/Stranger.dll"], []),
+        (["win64/other.dll", "linux32/stranger.so"], ["binaries/win64 has no stranger.dll"]),
+        (["darwin64/Stranger.dylib"], ["binaries/darwin64 has no stranger.dylib"]),
+    ],
+)
+def test_a_folder_of_binaries_has_one_of_the_name_of_the_fmu(tmp_path, places, missing):
+    path = build_stranger(tmp_path)
+    with ZipFile(path, "a") as archive:
+        for place in places:
+            archive.writestr(f"binaries/{place}", "")
+    found = {verdict.rule: verdict.problems for verdict in check(path, quick=True)}
+    assert found["binary-folder"] == missing
 
 
 def test_an_fmu_of_sources_alone_is_legal_and_one_of_nothing_is_not(tmp_path):
