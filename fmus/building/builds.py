@@ -196,7 +196,7 @@ def builders(builds: str | None, platform: str = "host", fmi: int = 2) -> list[B
     from ..python.packaging import build
 
     if fmi == 3 and builds in ("python", "both"):
-        raise NotPossible("for FMI 3.0 there are native builds only")
+        raise NotPossible("for FMI 3.0 there are native builds only: PythonFMU3 ends hosts (docs/fmus.md)")
     if fmi == 3:
         return [_native_builder(platform, fmi, FMI3_FOLDER)]
     if builds == "python":
