@@ -3,16 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
-from scipy.ndimage import gaussian_filter1d
 
 from ..base.errors import WiringError
 from ..cosimulation.interface import Interface
 from ..loop.places import ROAD_LOAD
-from ..recordings.drive import Drive
+
+if TYPE_CHECKING:
+    from ..recordings.drive import Drive
 
 ROTATING_MASS = 1.09
 """Mass including the rotating parts, over the mass."""
@@ -111,7 +111,7 @@ class Track:
     slope: np.ndarray
 
     @classmethod
-    def of(cls, recording: Drive, T_max: float = inf) -> Self:
+    def of(cls, recording: "Drive", T_max: float = inf) -> Self:
         """
         Args:
             T_max: largest torque of the motor in N.m.
@@ -131,6 +131,9 @@ def road_slope(v: np.ndarray, elevation: np.ndarray, interval: float) -> np.ndar
 
     Elevation is smoothed over 8 s (Gaussian), the slope over 2 s and limited to +-0.08.
     """
+    from scipy.integrate import cumulative_trapezoid  # every run asks for the rest of this file
+    from scipy.ndimage import gaussian_filter1d
+
     distance = cumulative_trapezoid(v, dx=interval, initial=0.0)
     climb = np.gradient(gaussian_filter1d(elevation, 8.0 / interval), interval)
     advance = np.maximum(np.gradient(distance, interval), SPEED_MIN)

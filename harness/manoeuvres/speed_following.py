@@ -14,7 +14,6 @@ its friction and its true inertia. Each is smoothed by a Gaussian of SMOOTHING, 
 """
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from ..base.errors import WiringError
 from ..loop.places import STEP_SIZE
@@ -50,6 +49,8 @@ def lacking_force(track: Track, load: RoadLoad, t: np.ndarray, v: np.ndarray) ->
 
 def smooth(force: np.ndarray, track: Track) -> np.ndarray:
     """The slow part of a force."""
+    from scipy.ndimage import gaussian_filter1d  # a recorded drive alone needs it
+
     return gaussian_filter1d(force, SMOOTHING / track.interval, mode="nearest")
 
 

@@ -13,7 +13,6 @@ from ....models.block.declaration import Real, variables
 from ...design.design_trials import loop_records
 from ...metrics.declaration import declared
 from ...metrics.run_metrics import Metrics
-from ...views.figure_style import in_cell, matrix_axes, sheet
 
 CHANGE = 0.1
 """By what share of itself each parameter is larger and smaller."""
@@ -93,6 +92,8 @@ def most_important(found: Sequence[Sensitivity], most: int = MOST) -> list[str]:
 
 def plot_sensitivity(found: Sequence[Sensitivity], title: str, stem: Path) -> list[Path]:
     """Parameters as rows, the metrics of each plant and manoeuvre as columns; returns the files."""
+    from ...views.figure_style import in_cell, matrix_axes, sheet  # not for the workers, which draw nothing
+
     rows = most_important(found)
     panels = list(dict.fromkeys((each.plant, each.manoeuvre) for each in found))
     columns = [metric.column.plain_heading for metric in declared(Metrics) if metric.name in SHOWN and metric.column]
