@@ -11,11 +11,6 @@ from contextlib import nullcontext
 from functools import partial
 from statistics import median
 from time import perf_counter, process_time
-from unittest.mock import patch
-
-from loky import cpu_count
-from rich.console import Console
-from rich.table import Table
 
 from benchmarks.timed import Timed
 from driveline.harness.base.interruption import script
@@ -59,6 +54,8 @@ def tip_in(plant: str, seed: int) -> None:
 
 def many(plant: str, runs: int, in_lanes: bool = True) -> tuple[float, float]:
     """Seconds of the clock and of the processor for many runs on all cores, with the start of the processes."""
+    from unittest.mock import patch  # not in the processes that run it
+
     began, before = perf_counter(), _processor_time()
     with nullcontext() if in_lanes else patch.object(many_runs, "lanes_here", lambda: 0):
         many_runs.run_many(partial(tip_in, plant), range(1, runs + 1))
@@ -72,6 +69,10 @@ def _processor_time() -> float:
 
 
 def main() -> None:
+    from loky import cpu_count
+    from rich.console import Console
+    from rich.table import Table
+
     parser = argparse.ArgumentParser(
         description=__doc__, epilog=EXAMPLES, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -11,12 +11,13 @@ import resource
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from math import nan
 from multiprocessing import get_context
 from shutil import which
 from time import process_time
 from typing import Any
 
-from benchmarks import commands, hosts, instructions, many_runs
+from benchmarks import commands, hosts, instructions, many_runs, simulate_parts
 from benchmarks.hosts import CONTENDERS, MICRO, START, STEADY, STEP_SIZE
 from benchmarks.timed import Timed
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
@@ -40,6 +41,9 @@ LENGTHS = (6.0, 60.0, 600.0)
 
 ENSEMBLES = (96, 384)
 """Runs, from whose processor times follow that of a start and that of a further run."""
+
+COMPARED = (96, 192)
+"""Runs that are compared one by one and in lanes."""
 
 CRUISING = replace(STEADY, v_0=10.0, T_driver=lines((0.0, 10.0)))
 """Of any length, without getting fast."""
@@ -113,19 +117,31 @@ def growth(least: Mapping[tuple[Any, ...], Cost], case: str, columns: Sequence[C
 
 
 def ensembles_table() -> Table:
-    """What many runs of a tip-in with their metrics cost at the start, and each of them."""
+    """What many runs of a tip-in with their metrics cost at the start and each of them, and over those one by one."""
     rows: dict[str, tuple[Cell, ...]] = {}
     for plant in PLANTS:
+        alone = (nan, nan)
         for how in ("one by one", "in lanes"):
             few, many = (many_runs.many(plant, runs, how == "in lanes")[1] for runs in ENSEMBLES)
             marginal = (many - few) / (ENSEMBLES[1] - ENSEMBLES[0])
-            rows[f"{plant}, {how}"] = few - ENSEMBLES[0] * marginal, 1e3 * marginal
-    return Table("plant, runs", (Column("start", "s", 2), Column("a run", "ms", 1)), rows)
+            start = few - ENSEMBLES[0] * marginal
+            alone = (start, marginal) if how == "one by one" else alone
+            ratios = [(alone[0] + runs * alone[1]) / (start + runs * marginal) for runs in COMPARED]
+            rows[f"{plant}, {how}"] = start, 1e3 * marginal, *ratios, alone[1] / marginal
+    faster = [Column(f"times as fast, {runs} runs", decimals=2) for runs in COMPARED]
+    columns = (Column("start", "s", 2), Column("a further run", "ms", 1), *faster, Column("any number", decimals=2))
+    return Table("plant, runs", columns, rows)
 
 
 def commands_table(least: Mapping[str, float]) -> Table:
     rows = {name: (1e3 * seconds, seconds / least[commands.UNIT]) for name, seconds in least.items()}
     return Table("command", (Column("processor time", "ms", 0), Column("ratio", decimals=2)), rows)
+
+
+def parts_table(least: Mapping[str, float]) -> Table:
+    """Of `driveline simulate`."""
+    rows = {name: (1e3 * seconds, seconds / sum(least.values())) for name, seconds in least.items()}
+    return Table("driveline simulate", (Column("processor time", "ms", 1), Column("share", decimals=2)), rows)
 
 
 def measured(turns: int, duration: float) -> Measured:
@@ -146,6 +162,7 @@ def measured(turns: int, duration: float) -> Measured:
         "lengths": growth(lengths, "s", (step, Column("memory", "MB", 0))),
         "ensembles": ensembles_table(),
         "commands": commands_table(commands.measure(turns)),
+        "parts": parts_table(simulate_parts.measure(turns)),
     }
     return Measured(tables | ({"instructions": instructions_table()} if which("valgrind") else {}))
 

@@ -9,6 +9,7 @@ from ...fmus.errors import BuildError, NotPossible
 from ...fmus.origin import is_stale, located
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError
+from ..cosimulation.system import System
 from .places import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile
 from .settings import Changes, Settings, chosen_build, loop, settings
 from .stale_fmus import warn_of_stale
@@ -47,8 +48,8 @@ def _checked(loops: list[Settings], build_in: "Place") -> list[Settings]:
     return loops
 
 
-def require_there(made: Settings) -> None:
-    """Warns of what is stale.
+def require_there(made: Settings) -> System:
+    """The loop; warns of what is stale.
 
     Raises:
         DrivelineError: an FMU of the project is not in the folder; says what makes it there.
@@ -61,6 +62,7 @@ def require_there(made: Settings) -> None:
         name = f" {missing[0].stem}" if missing[0].stem in COMPARATORS else ""
         raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{name}{only}{where}` makes it")
     warn_of_stale(system)
+    return system
 
 
 Needed = Mapping[str, Collection[str]]

@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cache, lru_cache
 from math import pi, sqrt
 from os import PathLike
 from pathlib import Path
@@ -173,7 +173,10 @@ def settings(given: Settings | NameOrFile | None = None, **changes: Unpack[Chang
         if "plant" in changes:
             raise TypeError(f"plant is given twice: {given} and {changes['plant']}")
         changes["plant"] = given
-    return Settings().replace(**changes)
+    return _usual().replace(**changes)
+
+
+_usual = cache(Settings)
 
 
 def running(made: Settings) -> Settings:

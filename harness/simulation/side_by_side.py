@@ -91,9 +91,7 @@ class _Turn(KeptLoops):
         self._mine, self._yours = Lock(), Lock()
         for lock in (self._mine, self._yours):
             lock.acquire()
-        arguments = self._work, function, case
-        with uninterrupted_children():
-            Thread(target=copy_context().run, args=arguments, daemon=True).start()
+        Thread(target=copy_context().run, args=(self._work, function, case), daemon=True).start()
 
     def go_on(self, reply: Results | BaseException | None = None) -> None:
         """Gives it the results that it has asked for, or an error, and waits until it asks again or has ended."""
@@ -141,7 +139,8 @@ class _RequestedLoop(NamedTuple):
 
 
 def _answered(function: Callable[[Any], Any], cases: Sequence[Any], loops: KeptLoops) -> list[Outcome]:
-    turns = [_Turn(function, case) for case in cases]
+    with uninterrupted_children():
+        turns = [_Turn(function, case) for case in cases]
     try:
         for turn in turns:
             turn.go_on()

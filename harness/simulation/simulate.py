@@ -19,7 +19,7 @@ from ..cosimulation.runs import run
 from ..cosimulation.system import Port
 from ..loop.built_fmus import require_there
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
-from ..loop.settings import Changes, Settings, loop, own_frequency, running
+from ..loop.settings import Changes, Settings, own_frequency, running
 from ..loop.settings import settings as settings_of
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -58,7 +58,7 @@ def simulate(
     given = _checked(start(manoeuvre, made.seed) | dict(made.parameters))
     require_steps(manoeuvre.duration, made.step_size)
     _warn(manoeuvre, given, made.step_size)
-    require_there(made)
+    system = require_there(made)
     experiment = Experiment(
         duration=manoeuvre.duration,
         step_size=made.step_size,
@@ -69,7 +69,7 @@ def simulate(
         label=manoeuvre.name,
     )
     try:
-        results = run(loop(made), experiment)
+        results = run(system, experiment)
     except SimulationError as refusal:
         if {"plant.mu", "plant.g_muL", "plant.g_muR"}.isdisjoint(made.parameters) or "omega_wheel_" not in str(refusal):
             raise
