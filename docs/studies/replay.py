@@ -9,6 +9,7 @@ from pathlib import Path
 from driveline.harness.loop.built_fmus import built_together
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import settings
+from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.road_load import Track
 from driveline.harness.metrics.run_metrics import RideMetrics
 from driveline.harness.recordings.drive import read_drive
@@ -20,7 +21,6 @@ from .data_file import ROOT
 from .study import Cell, Column, Measured, Study, Table, cell
 
 TRIPS = ROOT.parent / "shared" / "data"
-TOWN = ROOT / "harness" / "manoeuvres" / "data" / "town_drive.csv"
 
 CONTROLLERS = tuple(name for name in PLACES["controller"] if name != "NoDamping")
 
@@ -32,7 +32,7 @@ COLUMNS = (
 
 def recordings() -> Iterator[Path]:
     """Those that are there."""
-    yield TOWN
+    yield TOWN_DRIVE
     yield from sorted(TRIPS.glob("bmw_i3_trip_*.csv"))
 
 
@@ -56,11 +56,11 @@ def measure() -> Measured:
     return Measured({f"{path.stem}_{plant}": rides_table(path, plant) for path in recordings() for plant in PLANTS})
 
 
-SENTINEL = f"{TOWN.stem}_{PLANTS[0]}"
+SENTINEL = f"{TOWN_DRIVE.stem}_{PLANTS[0]}"
 
 
 def again() -> dict[str, Table]:
-    return {SENTINEL: rides_table(TOWN, PLANTS[0], CONTROLLERS[:1])}
+    return {SENTINEL: rides_table(TOWN_DRIVE, PLANTS[0], CONTROLLERS[:1])}
 
 
 STUDY = Study(

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import atan
+from pathlib import Path
 
 from ..base.known_names import ByName
 from .demand_shape import plateau_ends
@@ -182,5 +183,8 @@ EVERYDAY = (
 
 MANOEUVRES: dict[str, Manoeuvre] = ByName((each.name, each) for each in (*USUAL_MANOEUVRES, *EVERYDAY))
 """The manoeuvres of the project, by name."""
+
+TOWN_DRIVE = Path(__file__).parent / "data" / "town_drive.csv"
+"""A short drive in town of our own making, in the layout of a recording."""
 
 COMPARED = tuple(each.name for each in USUAL_MANOEUVRES if each.name not in ("prbs15", "launch_brake", "hill_hold"))

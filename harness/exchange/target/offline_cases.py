@@ -10,11 +10,10 @@ import numpy as np
 from ...cosimulation.interface import Interface
 from ...cosimulation.system import System
 from ...loop.settings import Settings
-from ...manoeuvres.catalogue import USUAL_MANOEUVRES
+from ...manoeuvres.catalogue import TOWN_DRIVE, USUAL_MANOEUVRES
 from ...manoeuvres.for_car import for_car
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
-from ...manoeuvres.town_drive import PATH as TOWN_DRIVE
 from ...metrics.evaluate import at_samples
 from ...recordings.drive import read_drive
 from ...simulation.simulate import signals, simulate

@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 
 from driveline.harness.commands.cli import main
-from driveline.harness.manoeuvres.town_drive import PATH
+from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from tests.harness.commands import Capsys
 
 FIRST = {
     "simulate": "TwoMassDriveline_tipin15_DampingController.csv",
     "record": "TwoMassDriveline_prbs_off.csv",
-    "replay": f"{PATH.stem}_metrics.csv",
+    "replay": f"{TOWN_DRIVE.stem}_metrics.csv",
     "faults": "faults.csv",
 }
 """A file of the results of each command."""
@@ -26,7 +26,7 @@ def message(both_built: Path, tmp_path: Path, capsys: Capsys):
 
     def message(command: str, *options: str) -> str:
         (folder / FIRST[command]).touch()
-        file = [str(PATH)] if command == "replay" else []
+        file = [str(TOWN_DRIVE)] if command == "replay" else []
         code = main([command, *file, "--fmus", str(both_built), "--output", str(folder), "--quiet", *options])
         assert code == 2
         assert [path.name for path in folder.iterdir()] == [FIRST[command]]

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from driveline.harness.manoeuvres import town_drive
-from driveline.harness.manoeuvres.catalogue import COMPARED, EVERYDAY, MANOEUVRES, USUAL_MANOEUVRES
+from docs.studies import town_drive
+from driveline.harness.manoeuvres.catalogue import COMPARED, EVERYDAY, MANOEUVRES, TOWN_DRIVE, USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.prbs import shift_register
 from driveline.harness.manoeuvres.signals import FlatSine, Held, lines
 from driveline.harness.recordings.drive import read_drive
@@ -109,8 +109,8 @@ def test_a_flat_sine_has_its_period_its_flanks_and_its_amplitude(frequency: floa
 
 def test_the_bundled_drive_is_that_of_its_script_with_stops_and_zero_torque(tmp_path):
     town_drive.write(tmp_path / "again.csv")
-    assert (tmp_path / "again.csv").read_bytes() == town_drive.PATH.read_bytes()
-    recording = read_drive(town_drive.PATH)
+    assert (tmp_path / "again.csv").read_bytes() == TOWN_DRIVE.read_bytes()
+    recording = read_drive(TOWN_DRIVE)
     moving = recording.v > 0.0
     starts = np.flatnonzero(moving[1:] & ~moving[:-1])
     stops = np.flatnonzero(~moving[1:] & moving[:-1])

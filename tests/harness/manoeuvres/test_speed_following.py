@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
+from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track
 from driveline.harness.manoeuvres.speed_following import (
     F_BRAKE_MAX,
@@ -19,7 +20,6 @@ from driveline.harness.manoeuvres.speed_following import (
     lacking_force,
     needed_force,
 )
-from driveline.harness.manoeuvres.town_drive import PATH
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.recordings.drive import read_drive
 
@@ -75,14 +75,14 @@ def test_of_1_hz_less_than_a_hundredth_is_left_and_of_the_drive_train_nothing(fr
 
 
 def test_brake_and_grade_are_the_force_but_for_the_band_of_the_drive_train():
-    town = Track.of(read_drive(PATH))
+    town = Track.of(read_drive(TOWN_DRIVE))
     F = needed_force(town, LOAD)
     rolling = ~holding(town, LOAD, F)
     manoeuvre = drive(town, LOAD, F)
     done = -manoeuvre.T_brake(town.t) / 0.29 - 1450.0 * 9.81 * np.sin(manoeuvre.slope(town.t))
     assert done[rolling] == pytest.approx(F[rolling])
     assert manoeuvre.T_brake(town.t)[rolling].max() > 100.0
-    town = Track.of(read_drive(PATH))
+    town = Track.of(read_drive(TOWN_DRIVE))
     manoeuvre = drive(town, LOAD, needed_force(town, LOAD))
     t = np.arange(2.5, 22.0, 0.002)
     for torque in (manoeuvre.T_brake(t), 0.29 * 1450.0 * 9.81 * np.sin(manoeuvre.slope(t))):

@@ -11,8 +11,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from docs.studies.town_drive import CAR
+from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.road_load import RoadLoad
-from driveline.harness.manoeuvres.town_drive import CAR, PATH
 from driveline.harness.recordings import channel_rules, plausibility
 from driveline.harness.recordings.channel_rules import (
     ACCELERATION,
@@ -119,7 +120,7 @@ def found(path: Path, **columns: str) -> list[Finding]:
 def test_what_is_wrong_with_a_drive_is_named_with_column_and_time(tmp_path: Path, case: str) -> None:
     spoil, rule, message = SPOILED[case]
     path = tmp_path / "drive.csv"
-    spoil(pd.read_csv(PATH)).to_csv(path, index=False)
+    spoil(pd.read_csv(TOWN_DRIVE)).to_csv(path, index=False)
     (finding,) = (each for each in found(path) if each.rule.name == rule)
     assert re.search(message, str(finding))
     assert str(finding).isprintable()
@@ -138,7 +139,7 @@ def test_what_is_said_to_mend_it_mends_it(tmp_path: Path) -> None:
         ("km/h called m/s", {"v": "Velocity [km/h]"}),
         ("ms called s", {"time": "Time [ms]"}),
     ):
-        SPOILED[case][0](pd.read_csv(PATH)).to_csv(path, index=False)
+        SPOILED[case][0](pd.read_csv(TOWN_DRIVE)).to_csv(path, index=False)
         assert found(path, **given) == []
 
 
@@ -159,7 +160,7 @@ def test_ms_are_not_tried_where_no_recording_is_that_fast(
     assert (pytest.approx(MS * time[-1]) in durations) == tried
 
 
-@pytest.mark.parametrize("path", [PATH, *(TRIPS / f"bmw_i3_trip_{trip}.csv" for trip in ("a01", "a11"))])
+@pytest.mark.parametrize("path", [TOWN_DRIVE, *(TRIPS / f"bmw_i3_trip_{trip}.csv" for trip in ("a01", "a11"))])
 def test_nothing_is_odd_in_drives_that_were_driven(path: Path) -> None:
     if not path.exists():
         pytest.skip(f"recorded drive {path} is not on this machine")
@@ -424,10 +425,10 @@ def test_every_rule_is_found_by_something_and_has_a_name_of_its_own() -> None:
 
 def test_a_code_is_a_hole_that_is_filled_if_it_is_short(tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
-    at(V, -999.0, 100)(pd.read_csv(PATH)).to_csv(path, index=False)
+    at(V, -999.0, 100)(pd.read_csv(TOWN_DRIVE)).to_csv(path, index=False)
     (finding,) = found(path)
     assert str(finding).startswith("line 102: Velocity [km/h] at 10 s is -999, which loggers write where there is no")
-    at(V, -999.0, *range(100, 103))(pd.read_csv(PATH)).to_csv(path, index=False)
+    at(V, -999.0, *range(100, 103))(pd.read_csv(TOWN_DRIVE)).to_csv(path, index=False)
     with pytest.raises(RecordingError, match=r"line 102: Velocity .* no value for 0\.4 s after 9\.9 s; holes"):
         read_drive(path)
 

@@ -17,11 +17,11 @@ from driveline.harness.commands.cli import main
 from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.loop.places import STEP_SIZE, T_S
 from driveline.harness.loop.settings import Settings
+from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track
 from driveline.harness.manoeuvres.signals import Lines
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
-from driveline.harness.manoeuvres.town_drive import PATH
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.studies.drives.replay import CLOSE, followed, replay, signals_of, speed_error, write
@@ -39,7 +39,7 @@ PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 def short_drive(tmp_path_factory):
     """The first eight seconds of the bundled drive."""
     path = tmp_path_factory.mktemp("recording") / "short.csv"
-    with PATH.open(encoding="utf-8") as file:
+    with TOWN_DRIVE.open(encoding="utf-8") as file:
         path.write_text("".join(islice(file, 82)), encoding="utf-8")
     return path
 
@@ -97,7 +97,7 @@ def test_a_controller_that_is_not_built_is_named_before_the_rides(short_drive, s
 
 
 def town():
-    return Track.of(read_drive(PATH), T_max=180.0)
+    return Track.of(read_drive(TOWN_DRIVE), T_max=180.0)
 
 
 def hilly():

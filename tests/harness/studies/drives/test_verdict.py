@@ -13,7 +13,7 @@ from docs.studies.plausible_drives import Judged, cases, judged
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import Settings
-from driveline.harness.manoeuvres.town_drive import PATH
+from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.studies.drives.replay import CLOSE
 from driveline.harness.views.terminal import print_rides
 
@@ -26,7 +26,7 @@ PUSHES = "Motor Torque [Nm] at "
 def turned(tmp_path: Path) -> Path:
     """Eight seconds of the drive in town with the torque of the other sign."""
     path = tmp_path / "turned.csv"
-    table = pd.read_csv(PATH)[20:100]
+    table = pd.read_csv(TOWN_DRIVE)[20:100]
     table.assign(**{"Motor Torque [Nm]": -table["Motor Torque [Nm]"]}).to_csv(path, index=False)
     return path
 
@@ -87,10 +87,10 @@ def test_a_look_runs_nothing_and_shows_what_was_read(turned, given, tmp_path, ca
 
 
 def test_of_a_drive_that_is_true_a_look_finds_nothing_and_it_has_no_report(given, capsys, caplog: Any) -> None:
-    assert main(["replay", str(PATH), *given, "--look", "--strict"]) == 0
+    assert main(["replay", str(TOWN_DRIVE), *given, "--look", "--strict"]) == 0
     assert "nothing is odd" in capsys.readouterr().out
     assert caplog.messages == []
-    assert main(["replay", str(PATH), *given, "--look", "--report", "page.html"]) == 2
+    assert main(["replay", str(TOWN_DRIVE), *given, "--look", "--report", "page.html"]) == 2
     assert "--look runs nothing, so that there is nothing to --report" in capsys.readouterr().err
 
 

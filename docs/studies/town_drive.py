@@ -1,6 +1,6 @@
 """A short drive in town of our own making, in the layout of a recording.
 
-    python -m driveline.harness.manoeuvres.town_drive
+    python -m docs.studies.town_drive
 
 writes it again to `harness/manoeuvres/data/town_drive.csv`: an uneven foot, passages of the torque through zero, a
 stop at a light. The speed is that of a point mass, sampled and rounded as a recording would be.
@@ -11,10 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .road_load import ROTATING_MASS, RoadLoad
-from .signals import lines
-
-PATH = Path(__file__).parent / "data" / "town_drive.csv"
+from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
+from driveline.harness.manoeuvres.road_load import ROTATING_MASS, RoadLoad
+from driveline.harness.manoeuvres.signals import lines
 
 CAR = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
 T_END, INTERVAL, STEP_SIZE = 62.0, 0.1, 0.01
@@ -66,9 +65,8 @@ def write(path: Path) -> None:
     """Writes the drive as a recording."""
     rows = [f"{t:.1f},{v:.2f},{height:.1f},{T:.2f}" for t, v, height, T in samples()]
     header = "Time [s],Velocity [km/h],Elevation [m],Motor Torque [Nm]"
-    path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("\n".join((header, *rows)) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    write(PATH)
+    write(TOWN_DRIVE)
