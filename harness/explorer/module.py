@@ -20,7 +20,7 @@ from ...fmus.native.packaging import build_native
 from ...fmus.origin import sources_digest
 from ..base.atomic_files import complete
 from ..base.errors import DrivelineError
-from ..base.user_cache import forget, named_as_cache, user_cache
+from ..base.user_cache import kept, named_as_cache, user_cache
 from ..cosimulation.compiled_steps import SOURCE as STEPS
 from ..cosimulation.interface import Interface, type_of
 from ..cosimulation.wiring import Fit, fit
@@ -119,15 +119,15 @@ def _standard_digest() -> str:
 
 def _kept(made_of: str, make: Callable[[], Module]) -> dict[str, Any]:
     """A module of the cache, which is made where it is not there."""
+
+    def write(path: Path) -> None:
+        made = make()
+        made.content["made_of"] = made_of
+        path.write_text(made.packed(), encoding="utf-8")
+
     path = user_cache() / "pages" / made_of[:32] / PACKAGED.name
-    if path.is_file() and (found := json.loads(path.read_text(encoding="utf-8")))["made_of"] == made_of:
-        return found
-    made = make()
-    made.content["made_of"] = made_of
-    with named_as_cache(path.parents[1]), complete(path) as unfinished:
-        unfinished.write_text(made.packed(), encoding="utf-8")
-    forget(path.parents[1].iterdir())
-    return json.loads(path.read_text(encoding="utf-8"))
+    with named_as_cache(path.parents[1]):
+        return json.loads(kept(path, write).read_text(encoding="utf-8"))
 
 
 def _standard() -> Module:

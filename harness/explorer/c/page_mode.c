@@ -8,6 +8,7 @@ typedef double complex number;
 enum { MOST_STATES = 40, MOST_SWEEPS = 60 };
 #define MOVE 1e-6 /* STEP in oscillation.py */
 #define CHANGE 0.5 /* of the torque to either side, in N.m */
+#define CLOSE 1e-6 /* to a pole, over it */
 
 static number work[MOST_STATES][MOST_STATES];
 
@@ -108,12 +109,12 @@ static int find_poles(size_t n, number poles[])
     return 1;
 }
 
-/* Solves (A - pole) x = b, or that with the transpose of A, in `work`; x takes the place of b. */
-static void solve(size_t n, const double A[][MOST_STATES], number pole, int transposed, number b[])
+/* Solves (s - A) x = b in `work`; x takes the place of b. */
+static void solve(size_t n, const double A[][MOST_STATES], number s, number b[])
 {
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++)
-            work[i][j] = (transposed ? A[j][i] : A[i][j]) - (i == j ? pole : 0.0);
+            work[i][j] = (i == j ? s : 0.0) - A[i][j];
     for (size_t k = 0; k < n; k++) {
         size_t pivot = k;
         for (size_t i = k + 1; i < n; i++)
@@ -136,51 +137,20 @@ static void solve(size_t n, const double A[][MOST_STATES], number pole, int tran
     }
 }
 
-/* How much of the response of a state to B is that of a pole. */
+/* How much of the response of a state to B is that of a pole: its residue, from the response close to it. */
 static double share(size_t n, const double A[][MOST_STATES], const double B[], size_t state, number pole)
 {
-    number right[MOST_STATES], left[MOST_STATES], product = 0.0, excited = 0.0;
-    const number near = pole * (1.0 + 1e-10);
+    number response[MOST_STATES];
     for (size_t k = 0; k < n; k++)
-        right[k] = left[k] = 1.0 + (double)k / (double)n;
-    for (int side = 0; side < 2; side++) { /* so near to the pole one step of the inverse iteration is enough */
-        number *vector = side ? left : right;
-        double largest = 0.0;
-        solve(n, A, near, side, vector);
-        for (size_t k = 0; k < n; k++)
-            largest = fmax(largest, cabs(vector[k]));
-        for (size_t k = 0; k < n; k++)
-            vector[k] /= largest;
-    }
-    for (size_t k = 0; k < n; k++) {
-        product += left[k] * right[k];
-        excited += left[k] * B[k];
-    }
-    return cabs(right[state] * excited / product);
+        response[k] = B[k];
+    solve(n, A, pole * (1.0 + CLOSE), response);
+    return cabs(response[state] * pole * CLOSE);
 }
 
-/* The frequency in Hz; 0 if there is none. Columns of A that are zero are of states that act on nothing. */
-static double frequency_of(size_t n, double A[][MOST_STATES], double B[], size_t state)
+/* The frequency in Hz; 0 if there is none. */
+static double frequency_of(size_t n, const double A[][MOST_STATES], const double B[], size_t state)
 {
     number poles[MOST_STATES];
-    for (size_t kept = 0; kept < n;) {
-        int acts = 0;
-        for (size_t i = 0; i < n; i++)
-            acts |= A[i][kept] != 0.0;
-        if (acts) {
-            kept++;
-            continue;
-        }
-        for (size_t i = 0; i < n; i++)
-            for (size_t j = kept; j + 1 < n; j++)
-                A[i][j] = A[i][j + 1];
-        for (size_t i = kept; i + 1 < n; i++) {
-            memcpy(A[i], A[i + 1], sizeof A[i]);
-            B[i] = B[i + 1];
-        }
-        state -= kept < state;
-        n--;
-    }
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++)
             work[i][j] = A[i][j];
@@ -189,7 +159,7 @@ static double frequency_of(size_t n, double A[][MOST_STATES], double B[], size_t
     double most = 0.0, found = 0.0;
     for (size_t k = 0; k < n; k++)
         if (cimag(poles[k]) > 0.0) {
-            const double shown = share(n, (const double(*)[MOST_STATES])A, B, state, poles[k]);
+            const double shown = share(n, A, B, state, poles[k]);
             if (shown > most) {
                 most = shown;
                 found = cabs(poles[k]) / (2.0 * acos(-1.0));
@@ -251,5 +221,5 @@ KEPT double mode_frequency(uint32_t number, size_t n, size_t state, fmi2ValueRef
         return 0.0;
     for (size_t i = 0; i < n; i++)
         B[i] = up[i] - down[i];
-    return frequency_of(n, A, B, state);
+    return frequency_of(n, (const double(*)[MOST_STATES])A, B, state);
 }

@@ -7,11 +7,6 @@ let held = [], shown = null; // shown: what is drawn: {wanted, runs: {controller
 const controls = []; // each shows its part of the settings
 const knobs = {}; // by name
 
-async function unpacked() {
-  const bytes = Uint8Array.from(atob(get("data").textContent), (c) => c.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).json();
-}
-
 function say(text, refused = false) {
   get("status").textContent = text;
   get("status").classList.toggle("refused", refused);
@@ -24,13 +19,11 @@ let asked = 0, answered = 0, waiting = null, kept = new Map();
 
 function worker(controller) {
   if (!workers.has(controller)) {
-    const code = Uint8Array.from(atob(data.loops.code), (c) => c.charCodeAt(0));
     const one = new Worker(URL.createObjectURL(new Blob([get("worker").textContent], {type: "text/javascript"})));
-    const ready = new Response(new Blob([code]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
-    const {code: _, ...loops} = data.loops;
+    const {code, ...loops} = data.loops;
     one.onmessage = ({data: answer}) => took(answer);
     one.onerror = (event) => say(`the worker has ended: ${event.message}`, true);
-    workers.set(controller, ready.then((bytes) => { one.postMessage({code: bytes, data: {...data, loops}}); return one; }));
+    workers.set(controller, unzipped(code).arrayBuffer().then((bytes) => { one.postMessage({code: bytes, data: {...data, loops}}); return one; }));
   }
   return workers.get(controller);
 }
@@ -94,17 +87,11 @@ function window_of(of) {
 
 // --- curves and metrics ---
 
-function added(run) {
-  return run["controller.T_ref"].map((value, k) => value - run["controller.T_driver"][Math.max(k - 1, 0)]);
-}
-
-const column = (run, name) => (name === "controller.added" ? (run[name] ??= added(run)) : run[name]);
-
 function draw(window) {
   const off = shown.runs.get(null).run, on = shown.runs.get(data.ours)?.run, runs = {off, on};
   const stays = held.filter((each) => each.manoeuvre === manoeuvre_key(shown.wanted));
   const curve = (run, name, label, color, dash, width) =>
-    ({kind: "curve", x: run.time, y: column(run, name), label, color, dash, width, held: false});
+    ({kind: "curve", x: run.time, y: run[name], label, color, dash, width, held: false});
   const panels = data.panels.map(({label, curves}, k) => ({
     label,
     parts: [

@@ -223,4 +223,4 @@ function impactSpeed(run, t_0) {
   return most;
 }
 
-if (typeof module !== "undefined") module.exports = {metrics, atSamples};
+if (typeof module !== "undefined") module.exports = {metrics, atSamples, added};

@@ -52,6 +52,7 @@ class Answerer {
     const run = yield* this.loops.run(name, {parameters: {...own, ...start, ...this.road(wanted)}, inputs, duration, step});
     this.last[controller] = key;
     const sampled = atSamples(run, Math.round(T_s / step));
+    sampled["controller.added"] = added(sampled["controller.T_driver"], sampled["controller.T_ref"]);
     return {run: sampled, worth: metrics(run, sampled, manoeuvre, T_s)};
   }
 

@@ -36,6 +36,13 @@ function place(x, limit) {
   return low;
 }
 
+// What is compressed in base64, and with it the data of the page.
+function unzipped(text) {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")));
+}
+const unpacked = () => unzipped(get("data").textContent).json();
+
 const decoded = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
 
 // What is drawn of arrays between two abscissas, with a sample beyond both.

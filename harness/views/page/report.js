@@ -1,12 +1,6 @@
 "use strict";
 // A report: its figures, which show what is chosen in a control or by a click on a row of a table.
 
-async function unpacked() {
-  const bytes = Uint8Array.from(atob(get("data").textContent), (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).json();
-}
-
 const controls = new Map(); // by their titles
 
 function control(title, choices, parent) {
