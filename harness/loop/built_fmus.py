@@ -10,6 +10,7 @@ from ...fmus.origin import is_stale, located
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError
 from ..cosimulation.system import System
+from .mapped_names import require_known
 from .places import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile
 from .settings import Changes, Settings, chosen_build, loop, settings
 from .stale_fmus import warn_of_stale
@@ -53,7 +54,9 @@ def require_there(made: Settings) -> System:
 
     Raises:
         DrivelineError: an FMU of the project is not in the folder; says what makes it there.
+        WiringError: the mapping names what is nothing in the loop.
     """
+    require_known(made.mapping)
     system = loop(made)
     missing = [path for name, path in system.instances.items() if name in system.own and not path.is_file()]
     if missing:

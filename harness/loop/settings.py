@@ -9,7 +9,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-from ...fmus.names import meant
 from ..base.errors import WiringError
 from ..base.known_names import nearest
 from ..cosimulation.limits import USUAL_LIMITS, Limits
@@ -211,8 +210,6 @@ def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes])
         WiringError: there is no such block or build.
     """
     made = running(settings(given, **changes))
-    if made.mapping:
-        _require_known(made.mapping)
     files = _files(made, made.build or chosen_build(made))
     own = frozenset(place for place, block in made.blocks.items() if str(block) in PLACES[place])
     return _system(tuple(files.items()), tuple(made.mapping.items()), own, made.limits)
@@ -235,34 +232,6 @@ def _system(
         own=own,
         limits=limits,
     )
-
-
-def _require_known(mapping: Mapping[str, str]) -> None:
-    """Refuses what maps a name that no block in that place has.
-
-    Raises:
-        WiringError: names it, and what is near, else what the loop exchanges with the place.
-    """
-    problems = []
-    for name, theirs in mapping.items():
-        place, _, variable = name.partition(".")
-        if place in PLACES and variable not in (known := _known(place)):
-            ports = (port for each in (CONNECTIONS, OFFERED) for connection in each for port in connection[:2])
-            ports = [*ports, *(port.name for each in (INPUTS, PARAMETERS, OUTPUTS) for port in each)]
-            there = dict.fromkeys(port.partition(".")[2] for port in ports if port.startswith(f"{place}."))
-            near = meant(variable, known) or f"known are {', '.join(there)}, and the parameters of our blocks"
-            problems.append(f"{name}={theirs}: nothing in the loop is called {name}; {near}")
-    if problems:
-        raise WiringError("\n".join(problems))
-
-
-@lru_cache
-def _known(place: str) -> frozenset[str]:
-    """Names of the variables that the project's blocks for a place have."""
-    from ...fmus.catalogue import EVERY  # all equations, which a run without a mapping does not need
-    from ...fmus.description.variables import interface
-
-    return frozenset(variable.name for name in PLACES[place] for variable in interface(EVERY[name].block))
 
 
 def chosen_build(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> str:
