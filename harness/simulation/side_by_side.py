@@ -76,32 +76,41 @@ class _RunRequest(NamedTuple):
 
 
 class _Turn(KeptLoops):
-    """A case whose function is at work in a thread of its own, while another one waits for it to ask for a run.
+    """A thread in which the function of one case after the other is at work, while another thread waits for it to ask
+    for a run.
 
     Attributes:
         request: the run that it waits for; None: it has ended.
         outcome: once it has ended.
     """
 
-    def __init__(self, function: Callable[[Any], Any], case: Any) -> None:
+    def __init__(self) -> None:
         super().__init__(None)
         self.request: _RunRequest | None = None
-        self.outcome = Outcome(None, _Stopped())
+        self.outcome: Outcome | None = None
         self._reply: Any = None
         self._mine, self._yours = Lock(), Lock()
         for lock in (self._mine, self._yours):
             lock.acquire()
-        Thread(target=copy_context().run, args=(self._work, function, case), daemon=True).start()
+        Thread(target=self._work, daemon=True).start()
 
-    def go_on(self, reply: Results | BaseException | None = None) -> None:
-        """Gives it the results that it has asked for, or an error, and waits until it asks again or has ended."""
-        self.stop(reply)
-        self._yours.acquire()
+    def begin(self, function: Callable[[Any], Any], case: Any) -> None:
+        """Goes on with a case."""
+        context = copy_context()
+        self.go_on(lambda: context.run(_outcome, function, case))
 
-    def stop(self, reply: Any) -> None:
-        """Gives it a reply and does not wait."""
+    def go_on(self, reply: Any) -> None:
+        """Gives it what it waits for, the results that it has asked for, or an error, and waits until it asks again or
+        has ended."""
         self._reply = reply
         self._mine.release()
+        self._yours.acquire()
+
+    def stop(self) -> None:
+        """Ends it as soon as it asks again or has ended its case, and does not wait."""
+        self._reply = _Stopped()
+        if self._mine.locked():
+            self._mine.release()
 
     def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Any:
         """What asks for runs of a system."""
@@ -116,15 +125,18 @@ class _Turn(KeptLoops):
             raise self._reply
         return self._reply
 
-    def _work(self, function: Callable[[Any], Any], case: Any) -> None:
-        self._mine.acquire()
-        try:
-            if not isinstance(self._reply, _Stopped):
-                with kept_by(self):
-                    self.outcome = _outcome(function, case)
-        finally:
-            self.request = None
-            self._yours.release()
+    def _work(self) -> None:
+        with kept_by(self):
+            while self._mine.acquire() and not isinstance(self._reply, _Stopped):
+                self.outcome, self.request = self._reply(), None
+                if isinstance(self._reply, _Stopped):
+                    return
+                self._reply = None  # nor does it keep results
+                self._yours.release()
+
+
+_idle: list[_Turn] = []
+"""Those whose case has ended: to begin one takes longer than to bring an FMU to its first step."""
 
 
 class _RequestedLoop(NamedTuple):
@@ -140,19 +152,24 @@ class _RequestedLoop(NamedTuple):
 
 def _answered(function: Callable[[Any], Any], cases: Sequence[Any], loops: KeptLoops) -> list[Outcome]:
     with uninterrupted_children():
-        turns = [_Turn(function, case) for case in cases]
+        turns = [_idle.pop() if _idle else _Turn() for _ in cases]
     try:
-        for turn in turns:
-            turn.go_on()
+        for turn, case in zip(turns, cases, strict=True):
+            turn.begin(function, case)
         while requests := [(turn, turn.request, turn.request.key()) for turn in turns if turn.request]:
             ((most, _),) = Counter(key for _, _, key in requests).most_common(1)
             alike = [(turn, run) for turn, run, key in requests if key == most][: lanes_here() or None]
             for (turn, _), reply in zip(alike, _made([run for _, run in alike], loops), strict=True):
                 turn.go_on(reply)
-    finally:
+    except BaseException:
         for turn in turns:
-            turn.stop(_Stopped())
-    return [turn.outcome for turn in turns]
+            turn.stop()
+        raise
+    found = [turn.outcome for turn in turns if turn.outcome]
+    for turn in turns:
+        turn.outcome = None
+    _idle.extend(turns)
+    return found
 
 
 def _made(requests: Sequence[_RunRequest], loops: KeptLoops) -> list[Results | BaseException]:

@@ -1,10 +1,12 @@
 """Cases side by side: one function at work at a time, and the answers of single runs."""
 
 import os
+import threading
 import time
 from dataclasses import replace
 from pathlib import Path
 from shutil import copytree
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -147,6 +149,25 @@ def test_one_function_is_at_work_at_a_time(both_built, lanes):
         return case
 
     assert run_many(alone, range(9), workers=1) == list(range(9))
+
+
+def test_threads_are_those_of_the_batch_before_and_end_where_it_is_stopped(both_built, lanes, monkeypatch):
+    def ended(case: int) -> int:
+        simulate(TIPIN, seed=case, folder=both_built)
+        return case
+
+    monkeypatch.setattr(side_by_side, "_idle", [])
+    before = threading.active_count()
+    for _ in range(2):
+        assert run_many(ended, range(4), workers=1) == list(range(4))
+        assert threading.active_count() == before + 4
+    monkeypatch.setattr(side_by_side, "_made", Mock(side_effect=KeyboardInterrupt))
+    with pytest.raises(KeyboardInterrupt):
+        run_many(ended, range(4), workers=1)
+    for thread in threading.enumerate():
+        if "_work" in thread.name:
+            thread.join(5.0)
+    assert threading.active_count() == before
 
 
 def test_the_first_case_with_an_error_is_named(both_built, lanes):
