@@ -38,8 +38,8 @@ from .fmus.building.parameter_files import read_vehicle as read_vehicle
 from .fmus.building.parameter_files import read_parameters as read_parameters
 from .fmus.building.parameter_files import read_files as read_files
 from .fmus.building.car_entries import car as car
-from .harness.design.design_trials import loop_parameters as loop_parameters
-from .harness.design.design_trials import controller_parameters as controller_parameters
+from .harness.design.loop_parameters import loop_parameters as loop_parameters
+from .harness.design.loop_parameters import controller_parameters as controller_parameters
 from .harness.design.design import design as design
 from .harness.design.design_weights import Weights as Weights
 from .harness.design.redesign import softened as softened

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from driveline.harness.design.design import design
-from driveline.harness.design.design_trials import loop_parameters
 from driveline.harness.design.design_weights import MOTOR, PLANT
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import KMH, step
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre

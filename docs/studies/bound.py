@@ -24,7 +24,7 @@ import numpy as np
 from driveline.fmus.building.parameter_files import read_files
 from driveline.harness.cosimulation.parameter_changes import require_constant
 from driveline.harness.cosimulation.wiring import fit
-from driveline.harness.design.design_trials import loop_parameters
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.loop.built_fmus import built
 from driveline.harness.loop.places import BUILD, PLACES, PLANTS, T_S
 from driveline.harness.loop.settings import Settings, loop

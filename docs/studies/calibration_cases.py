@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from driveline.harness.design.design import damping_law, design
-from driveline.harness.design.design_trials import loop_parameters, mean
 from driveline.harness.design.design_weights import CAN as BUS
 from driveline.harness.design.design_weights import MOTOR, PARAMETERS, PLANT, WEIGHTS, drive_train
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
@@ -22,6 +22,8 @@ from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.simulation.simulate import simulate
 from driveline.models.controller.supervision import FALLBACK
+
+from .design_trials import mean
 
 SEEDS = (1, 2, 3)
 

@@ -5,7 +5,6 @@ from itertools import product
 from math import inf, isnan
 from typing import NamedTuple
 
-from driveline.harness.design.design_trials import mean
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
 from driveline.harness.loop.places import COMPARATORS, PLACES, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -15,6 +14,7 @@ from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.robustness.outcome import SHOWN
 
+from .design_trials import mean
 from .study import Cell, Column, Measured, Study, Table, cell, number
 
 OURS = PLACES["controller"][0]

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.design.design import design
-from driveline.harness.design.design_trials import Gains, Trial, measured, own_gains
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
@@ -18,6 +17,7 @@ from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.margins.car_properties import swing
 
 from .data_file import ROOT
+from .design_trials import Gains, Trial, measured, own_gains
 from .study import Cell, Column, Measured, Study, Table, cell
 
 CARS = {"default": None, **{path.stem: path for path in sorted((ROOT / "examples" / "cars").glob("*.toml"))}}

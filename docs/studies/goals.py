@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from driveline.fmus.building.parameter_files import read_parameters
-from driveline.harness.design.design_trials import loop_parameters
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
 from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
 from driveline.harness.loop.places import PLACES, PLANTS

@@ -19,8 +19,8 @@ from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.base.csv_file import write_csv
 from driveline.harness.design import redesign
 from driveline.harness.design.design import design
-from driveline.harness.design.design_trials import loop_parameters
 from driveline.harness.design.design_weights import MOTOR, PLANT, records
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.redesign import REDESIGN_MANOEUVRES
 from driveline.harness.identification.car_file import identified_car
 from driveline.harness.identification.drive_train_response import response

@@ -11,7 +11,7 @@ import numpy as np
 
 from driveline.fmus.building.one_car import DEFAULT_CAR, FOLLOW, of_one_car
 from driveline.fmus.errors import ParameterFileError
-from driveline.harness.design.design_trials import loop_parameters
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.identification.step import identify_step
 from driveline.harness.loop.built_fmus import built
 from driveline.harness.loop.places import PLANTS

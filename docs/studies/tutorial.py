@@ -6,7 +6,7 @@ from typing import Any
 
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.cosimulation.results import Results
-from driveline.harness.design.design_trials import loop_parameters, own_gains
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.for_car import for_car
@@ -19,6 +19,7 @@ from driveline.harness.views.signal_lines import WITHOUT
 from driveline.harness.views.step_figure import step_drawing
 
 from .data_file import ROOT
+from .design_trials import own_gains
 from .results import COLUMNS, DAMPINGS, metrics_cells
 from .study import Measured, Study, Table
 

@@ -45,13 +45,13 @@ def estimator_gains(
     }
 
 
-def transition(plant: Plant, lambda_v: float, h: float = T_S) -> np.ndarray:
-    """Matrix (4, 4) of the estimator's model over h seconds in contact, deviations from a state there."""
+def transition(plant: Plant, lambda_v: float) -> np.ndarray:
+    """Matrix (4, 4) of the estimator's model over a sample in contact, deviations from a state there."""
     model = Parameters(J_1=plant.J_1, J_2=plant.J_2, C=plant.C, phi_B=plant.phi_B, lambda_v=lambda_v)
     contact = np.array(Estimate(0.0, 0.0, 2.0 * plant.phi_B + 1.0, 0.0))
-    base = np.array(integrated(Estimate(*contact.tolist()), 0.0, plant.phi_B, h, model))
+    base = np.array(integrated(Estimate(*contact.tolist()), 0.0, plant.phi_B, T_S, model))
     columns = [
-        np.array(integrated(Estimate(*(contact + row).tolist()), 0.0, plant.phi_B, h, model)) - base
+        np.array(integrated(Estimate(*(contact + row).tolist()), 0.0, plant.phi_B, T_S, model)) - base
         for row in np.eye(4)
     ]
     return np.array(columns).T

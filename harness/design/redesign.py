@@ -2,15 +2,21 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import inf
 from typing import Any
 
 import numpy as np
 
 from ..loop.places import PLANTS
 from ..loop.settings import Settings
+from ..loop.settings import settings as settings_of
+from ..manoeuvres.catalogue import MANOEUVRES
+from ..manoeuvres.for_car import for_car
+from ..metrics.evaluate import evaluate
+from ..simulation.simulate import simulate
 from .design import design
-from .design_trials import controller_parameters, loop_parameters, settled
 from .design_weights import WEIGHTS, Weights
+from .loop_parameters import controller_parameters, loop_parameters
 
 REDESIGN_MANOEUVRES = ("tipin15", "tipin0", "tipout", "launch")
 """In which controllers are compared."""
@@ -34,7 +40,10 @@ def worth(
     """
     true, of_car = loop_parameters(car, plant), controller_parameters(car, plant)
     others = {name: value for name, value in true.items() if name not in of_car}
-    return settled(plant, manoeuvre, others | controller_parameters(assumed, plant), settings=settings)
+    parameters = others | controller_parameters(assumed, plant)
+    course = for_car(MANOEUVRES[manoeuvre], parameters.get("motor.T_max", inf))
+    metrics = evaluate(simulate(course, settings_of(settings, plant=plant, parameters=parameters, seed=1)), course)
+    return metrics.settling_time, metrics.overshoot
 
 
 def softened(car: Mapping[str, Any], before: Mapping[str, Any], settings: Settings | None = None) -> Weights:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ...fmus.building.one_car import SHAFTS, WHEELS
-from .design_trials import loop_parameters, loop_records
+from .loop_parameters import loop_parameters, loop_records
 
 
 class Deviation(NamedTuple):

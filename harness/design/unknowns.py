@@ -53,18 +53,15 @@ def not_given(entries: Mapping[str, Any]) -> list[Entry]:
     return [each for each in car_entries(entries) if each.name in lacking]
 
 
-def unknowns(entries: Mapping[str, Any], settings: Settings | None = None) -> list[Unknown]:
+def unknowns(entries: Mapping[str, Any]) -> list[Unknown]:
     """What of DECIDE a vehicle file does not have, with what each is worth; most of it first.
-
-    Args:
-        settings: of the runs beside plant and parameters; None: FMUs are built where they are missing.
 
     Raises:
         DesignError: there is no controller for this car.
     """
     if not (lacking := not_given(entries)):
         return []
-    car, made = with_estimates(entries), settings or built(PLANT)
+    car, made = with_estimates(entries), built(PLANT)
     assumed = {**car, **design(car)}
     found = [Unknown(each, *_worth(car, each, assumed, made)) for each in lacking]
     return sorted(found, key=lambda each: (each.settling, each.overshoot), reverse=True)

@@ -13,7 +13,7 @@ from ....fmus.building.estimates import DECIDE, SHEET
 from ....fmus.building.one_car import MEASURED
 from ....models.damping_controller import BLOCK
 from ...base.plain_text import printed
-from ...design.design_trials import loop_parameters
+from ...design.loop_parameters import loop_parameters
 from ...design.unknowns import COSTS, Unknown
 from ...loop.places import PLANTS
 from ...views.terminal import plain_table, print_table

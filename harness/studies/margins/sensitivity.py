@@ -10,7 +10,7 @@ import numpy as np
 
 from ....fmus.building.parameter_files import OF_A_RUN
 from ....models.block.declaration import Real, variables
-from ...design.design_trials import loop_records
+from ...design.loop_parameters import loop_records
 from ...metrics.declaration import declared
 from ...metrics.run_metrics import Metrics
 

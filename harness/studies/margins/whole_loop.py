@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Unpack
 
 from ...base.argument_kinds import require_each
-from ...design.design_trials import loop_parameters
+from ...design.loop_parameters import loop_parameters
 from ...loop.own_controller import with_equations
 from ...loop.places import PLACES, PLANTS
 from ...loop.settings import RunChanges, Settings

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from driveline.harness.design.design_trials import Gains, Trial, measured
+from docs.studies.design_trials import Gains, Trial, measured
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import Settings
 from tests import ROOT

@@ -8,10 +8,11 @@ from typing import Any
 
 import pytest
 
+from docs.studies.design_trials import Gains, Trial, measured, parameters
 from driveline.harness.design import redesign
 from driveline.harness.design.design import design
-from driveline.harness.design.design_trials import Gains, Trial, loop_parameters, measured, parameters
 from driveline.harness.design.design_weights import WEIGHTS
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.redesign import MARGIN, REDESIGN_MANOEUVRES, SOFTER, SOFTEST, softened, worth
 from driveline.harness.design.uncertainty_box import BOX, LOSS, NOMINAL, Deviation, corner, deviating, screening
 from driveline.harness.loop.places import NATIVE, PLANTS
@@ -169,7 +170,7 @@ def test_what_a_controller_is_worth_depends_on_the_car_and_on_what_it_is_told(bo
         given.append(settings)
         return simulate(manoeuvre, settings)
 
-    monkeypatch.setattr("driveline.harness.design.design_trials.simulate", noted)
+    monkeypatch.setattr("driveline.harness.design.redesign.simulate", noted)
     car, gains, settings = {"C": 90.0}, design({"C": 90.0}), Settings(folder=both_built)
     settling, overshoot = worth("TwoMassDriveline", "tipin15", car, {}, settings)
     assert worth("TwoMassDriveline", "tipin15", car, {**car, **gains}, settings) != (settling, overshoot)
