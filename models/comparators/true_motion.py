@@ -50,10 +50,10 @@ class WithTrueMotion(Supervised[EstimatorState, LawState]):
 def with_true_motion(expected: EstimatorState, u: Truth, p: AllParameters) -> EstimatorState:
     """The state of the model with the plant's motion; as expected where that is none.
 
-    Its twist is that which makes the true gear torque and, in the gap, the true one.
+    Its twist is that which makes the true gear torque and, in the gap, the true one. No slip makes it less sure.
     """
     phi = u.T_gear / p.C + clip(u.phi, -p.phi_B, p.phi_B)
-    true = expected._replace(base=0.0, estimate=Estimate(u.omega_1, u.omega_2, phi, 0.0))
+    true = expected._replace(base=0.0, estimate=Estimate(u.omega_1, u.omega_2, phi, 0.0), slip=0.0)
     known = logical_and(in_range(u.omega_1, p.omega_max), in_range(u.omega_2, p.omega_max))
     known = logical_and(logical_and(known, is_finite(u.phi)), in_range(u.T_gear, LARGEST_TORQUE * p.T_max))
     return branch(known, lambda: true, lambda: expected)

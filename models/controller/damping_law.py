@@ -22,7 +22,8 @@ most T_next. An impact with the first part of omega_land alone twists the drive 
 landing_share T. What the landing has withheld comes back with the time constant t_return. A landing lasts t_land
 at most, and a demand that is next to nothing has none.
 
-Shape and landing_brake fade where the wheels slip: there the road takes less than is demanded, and the estimate lags.
+Where the wheels slip shape, landing_brake and the time for a landing fade, the damping to half: there the road takes
+less than is demanded, and the estimate lags.
 """
 
 from typing import Annotated, NamedTuple
@@ -141,15 +142,15 @@ def update(
 ) -> tuple[LawState, Addition]:
     omega, change = motion.omega, expected.omega - motion.omega
     fed_back = p.k_d * (omega + p.T_pred / T_s * change)
-    damping = clip(x.washout - fed_back, -p.T_add_max, p.T_add_max)
     grip = 1.0 - motion.slip
+    damping = clip(minimum(1.0, 0.5 + grip) * (x.washout - fed_back), -p.T_add_max, p.T_add_max)
     shape = grip * (p.shape_1 * (T_driver - x.first) + p.shape_2 * (x.first - x.second))
     T_next = T_driver + p.demand_lead * (T_driver - x.slow)
 
     pushing = logical_and(abs(T_driver) > p.T_still, T_driver * T_next > 0.0)
     floating = logical_and(in_gap(motion), pushing)
     afloat = where(floating, minimum(x.afloat + T_s, p.t_land + T_s), 0.0)
-    landing = logical_and(floating, afloat < p.t_land + 0.5 * T_s)
+    landing = logical_and(floating, afloat < grip * p.t_land + 0.5 * T_s)
     samples = p.T_pred_land / T_s
     phi = motion.phi + samples * (expected.phi - motion.phi)
     T_land = landing_torque(omega + samples * change, phi, motion.phi_B, T_next, grip * p.landing_brake, p)

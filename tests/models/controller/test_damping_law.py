@@ -73,6 +73,11 @@ def test_the_speed_difference_is_opposed(motion: Motion) -> None:
     assert added(motion._replace(omega_2=103.0), x, 2.0) == 2.0 * 3.0
 
 
+@pytest.mark.parametrize(("slip", "share"), [(0.25, 1.0), (0.5, 1.0), (0.75, 0.75), (1.0, 0.5)])
+def test_half_of_the_damping_is_left_where_it_is_clear_that_the_wheels_slip(slip: float, share: float) -> None:
+    assert added(STILL._replace(omega_1=103.0, slip=slip), start(STILL, 2.0, P), 2.0) == -share * 2.0 * 3.0
+
+
 @pytest.mark.parametrize(("slip", "share"), [(0.0, 1.0), (0.5, 0.5), (1.0, 0.0)])
 def test_a_change_of_the_demand_is_shaped_where_the_wheels_do_not_slip(slip: float, share: float) -> None:
     """By shape_1 of it at first, which a lag of half a sample forgets, and shape_2 of what the next lag still has."""
@@ -152,7 +157,7 @@ def test_between_the_flanks_the_motor_is_led_to_that_of_the_demand(side: float, 
 @pytest.mark.parametrize(
     ("omega", "share"), [(-5.0, -1.0 / 3.0), (0.0, 0.0), (5.0, 1.0 / 3.0), (10.0, 0.5), (30.0, 0.75)]
 )
-@pytest.mark.parametrize("slip", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("slip", [0.0, 0.25, 0.5])
 @each_side
 def test_the_braking_of_a_landing_is_commanded_in_advance(side: float, omega: float, share: float, slip: float) -> None:
     """Half of landing_brake T_gap at the speed of the landing, less for a slower motor and where wheels slip."""
@@ -215,6 +220,12 @@ def test_the_teeth_have_t_land_to_land() -> None:
         assert demanded([AFLOAT] * 7, 16.0, P._replace(t_land=t_land)) == pytest.approx([10.0] * 5 + [13.0, 14.5])
     assert demanded([AFLOAT] * 6, 16.0, P._replace(t_land=0.875)) == pytest.approx([10.0] * 4 + [13.0, 14.5])
     assert demanded([AFLOAT] * 2, 16.0, P._replace(t_land=0.0)) == [16.0] * 2
+
+
+def test_wheels_that_slip_leave_less_time_to_land() -> None:
+    slips = AFLOAT._replace(slip=0.5), AFLOAT._replace(slip=1.0)
+    assert demanded([slips[0]] * 5, 16.0, P._replace(t_land=1.0)) == pytest.approx([10.0] * 3 + [13.0, 14.5])
+    assert demanded([slips[1]] * 2, 16.0) == [16.0] * 2
 
 
 def test_teeth_that_touched_may_land_again() -> None:
