@@ -22,9 +22,10 @@ from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import MOTOR, PLANT, records
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.redesign import REDESIGN_MANOEUVRES
+from driveline.harness.identification.car_file import found as rows_of
 from driveline.harness.identification.car_file import identified_car
 from driveline.harness.identification.drive_train_response import response
-from driveline.harness.identification.estimator import Found, search
+from driveline.harness.identification.estimator import Z_95, Found, search
 from driveline.harness.identification.identify import FREE, Identified, of_sensors
 from driveline.harness.identification.model_inputs import drive_of
 from driveline.harness.identification.prediction import Predictor
@@ -107,6 +108,8 @@ def identified(recorded: Measurement, vehicle: Mapping[str, float], more: Sequen
 def answer_of(one: Identified, seconds: float) -> Answer:
     values = {name: float(value) for name, value in one.p._asdict().items()}
     deviations = dict(one.found.deviations)
+    phi_B = next(row for row in rows_of(one) if row.name == "phi_B")
+    values["phi_B"], deviations["phi_B"] = phi_B.value, phi_B.half / Z_95
     if one.loop:
         values["tau"], deviations["tau"] = one.loop.loop.tau, one.loop.deviations["tau"]
     return Answer(values, deviations, one.warnings, asdict(one.quality), one.resonance, seconds)
@@ -287,7 +290,7 @@ def judged(case: tuple[str, int, bool]) -> Judged:
     own, others = worth(car, identified_car(one, before)), worth(car, car)
     return Judged(
         answer,
-        one.p.phi_B / records(car)[0].phi_B,
+        answer.values["phi_B"] / records(car)[0].phi_B,
         float(RESPONSE[int(np.argmax(abs(true)))]),
         float(np.sqrt(np.mean(off**2))),
         (own[0] / others[0], own[1] / others[1]),

@@ -13,7 +13,8 @@ from .estimator import Z_95
 from .free_runs import SIMULATED
 from .identify import WITH_LOAD, WITHOUT_LOAD, Identified
 from .priors import OF_CAR, PRIORS
-from .two_mass_equivalent import equivalent, is_explained
+from .step import Step
+from .two_mass_equivalent import equivalent
 
 BESIDE = {"tau": "lag of motor control", "late_2": "age of the wheel speed"}
 """Times in s that the filter does not know, by what they mean."""
@@ -65,7 +66,12 @@ def found(identified: Identified) -> list[Row]:
     """Of each parameter that was identified."""
     answer, p = identified.found, identified.p._asdict()
     halves = {name: Z_95 * deviation for name, deviation in answer.deviations.items()}
-    rows = [Row(name, float(p[name]), halves[name], answer.told_by(name)) for name in OF_CAR if name in halves]
+    told = {name: answer.told_by(name) for name in OF_CAR if name in halves}
+    if by := identified.driven:
+        p["phi_B"], halves["phi_B"], told["phi_B"] = *_driven(by, "phi_B"), "motor speed"
+    elif not identified.explained and "phi_B" in halves:
+        halves["phi_B"] = max(halves["phi_B"], identified.unconfirmed * p["phi_B"])
+    rows = [Row(name, float(p[name]), halves[name], channel) for name, channel in told.items()]
     if identified.loop:
         tau, half = identified.loop.loop.tau, Z_95 * identified.loop.deviations["tau"]
         rows.append(Row("tau", tau, half, "torque demand"))
@@ -74,9 +80,17 @@ def found(identified: Identified) -> list[Row]:
     return rows
 
 
+def _driven(by: Step, name: str) -> tuple[float, float]:
+    """Value and half of the interval."""
+    return by.values[name], by.values[name] * by.halves[name]
+
+
 def of_car(identified: Identified) -> tuple[float, float]:
-    """C of the vehicle file in N.m/rad, and half of its 95 % interval, by the covariance of the likelihood: a filter
-    that trusts the model less splits the car otherwise, and the file needs its frequency."""
+    """C of the vehicle file in N.m/rad, and half of its 95 % interval: of the plant that was driven, else by the
+    covariance of the likelihood, since a filter that trusts the model less splits the car otherwise, and the file needs
+    its frequency."""
+    if identified.driven:
+        return _driven(identified.driven, "C")
     p, answer = identified.p, identified.found
 
     def C(p: Parameters) -> float:
@@ -95,9 +109,10 @@ def of_car_line(identified: Identified) -> str:
     C, half = of_car(identified)
     why = (
         "J_2 and C as they were found, as the model explains the car"
-        if is_explained(identified)
+        if identified.explained
         else "J_2 as it was, as the model does not explain all; with that C the design's car swings as this one does"
     )
+    why += f" ({identified.driven.plant} driven by the recorded torque)" if identified.driven else ""
     return f"in the vehicle file C = {C:.5g} +- {half:.2g} N.m/rad ({100.0 * half / C:.2g} %): {why}"
 
 
@@ -145,12 +160,14 @@ def identified_car(identified: Identified, vehicle: Mapping[str, Any] | None = N
         )
     # as the likelihood has it: what a second estimate adds is said, and keeps nothing out of the file
     halves = dict(zip(identified.found.free, Z_95 * np.sqrt(np.diag(identified.found.of_likelihood)), strict=True))
+    if identified.driven:
+        halves["phi_B"] = rows["phi_B"].half
     known = {
         name: row.value
         for name, row in rows.items()
         if row.told_by and halves.get(name, row.half) <= WIDEST_INTERVAL * row.value
     }
-    names = ("J_2", "phi_B", "J_1", "tau") if is_explained(identified) else ("phi_B", "J_1", "tau")
+    names = ("J_2", "phi_B", "J_1", "tau") if identified.explained else ("phi_B", "J_1", "tau")
     entries = {"C": C, **{name: known[name] for name in names if name in known}}
     return updated(vehicle or {}, {name: float(f"{value:.6g}") for name, value in entries.items()})
 
@@ -188,6 +205,7 @@ def document(identified: Identified) -> dict[str, Any]:
         "resonance_Hz": identified.resonance,
         "vehicle_file": identified_car(identified),
         "C_of_the_car": dict(zip(("value", "half"), of_car(identified), strict=True)),
+        "driven_plant": identified.driven and vars(identified.driven),
         "equivalent": equivalent(identified, identified.p)._asdict(),
         # JSON has no NaN
         "fit": {name: value for name, value in vars(identified.quality).items() if not np.isnan(value)},

@@ -1,12 +1,17 @@
 """What a recording tells of a car of which something is known already."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ..base.argument_kinds import require_each, require_kind
 from ..design.design_weights import records
+from ..loop.built_fmus import built_together
+from ..loop.places import NATIVE, PLANTS
+from ..loop.settings import Settings
 from ..recordings.measurement import Measurement
 from .drive_train import Parameters, Vehicle
+from .driven_plants import diagnose_driven, driven_plants
 from .identify import Identified, Log
 from .identify import identify as identified_from
 
@@ -37,7 +42,14 @@ def identify(
     require_kind("recording", recording, Measurement, "a Measurement, as read_measurement reads it")
     require_each("more", more, str, "names of parameters")
     _, motor, _ = records(vehicle or {})
-    return identified_from(recording, *known(vehicle or {}), motor.tau, more, log)
+    found = identified_from(recording, *known(vehicle or {}), motor.tau, more, log)
+    if found.explained or not found.found.told_by("phi_B"):
+        return found
+    log("driving both plants by the recorded torque, as the model does not explain the car")
+    settings = built_together(Settings(plant) for plant in PLANTS)[0]
+    if settings.build == NATIVE:  # the other build would take minutes
+        found = replace(found, driven=driven_plants(found, vehicle or {}, settings))
+    return replace(found, warnings=(*found.warnings, *diagnose_driven(found)))
 
 
 def known(vehicle: Mapping[str, Any]) -> tuple[Parameters, Vehicle]:

@@ -8,7 +8,7 @@ The validation vehicle stands for a car, the design model for recordings that we
 better is taken. What it does not explain beyond the noise may be as wrong as the answers of the two differ.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from math import hypot, log, sqrt
@@ -169,17 +169,38 @@ def identify_step(recording: Measurement, vehicle: Mapping[str, Any], settings: 
     before = step.at[quiet], step.omega_1[quiet]
     noise = float(np.std(before[1] - np.polyval(np.polyfit(*before, 2), before[0])))
     with kept_loaded():
-        fits = [_fitted(plant, step, noise, vehicle, settings) for plant in PLANTS]
+        starts = [{"C": log(C), "phi_B": log(phi_B)} for C, phi_B in product(STIFFNESSES, GAPS)]
+        fits = [fitted(plant, step, noise, vehicle, settings, starts)[0] for plant in PLANTS]
     best, other = sorted(fits, key=lambda found: found.error)
-    unexplained = sqrt(max(1.0 - (EXPLAINED * noise / best.error) ** 2, 0.0))
     apart = {
         name: float(np.clip(abs(log(other.values[name] / value)), *APART[name])) for name, value in best.values.items()
     }
-    unlike = {name: hypot(LEAST[name], UNLIKE * unexplained * apart[name]) for name in apart}
+    unlike = {name: hypot(LEAST[name], UNLIKE * unexplained(best) * apart[name]) for name in apart}
     return replace(best, halves={name: hypot(half, unlike[name]) for name, half in best.halves.items()})
 
 
-def _fitted(plant: str, step: Tip, noise: float, vehicle: Mapping[str, Any], settings: Settings) -> Step:
+def unexplained(found: Step) -> float:
+    """Share of the error that is beyond the noise."""
+    return sqrt(max(1.0 - (EXPLAINED * found.noise / found.error) ** 2, 0.0))
+
+
+def fitted(
+    plant: str,
+    step: Tip,
+    noise: float,
+    vehicle: Mapping[str, Any],
+    settings: Settings,
+    starts: Sequence[Mapping[str, float]],
+    most: int = 12,
+) -> tuple[Step, dict[str, float]]:
+    """The car whose motor speed is the recorded one, and by what it is moved from what is known.
+
+    Args:
+        noise: of the motor speed in rad/s.
+        vehicle: entries of the vehicle file as the car is known.
+        starts: by what it may be moved; the search begins with the best of them.
+        most: Jacobians of each of two searches.
+    """
     system, known = _plant(settings.replace(plant=plant)), with_estimates(vehicle)
     names = [name for name in SEARCHED if name != "damping" or plant != PLANTS[0]]
     names = [name for name in names if name != "phi_B" or step.reversal]
@@ -187,19 +208,20 @@ def _fitted(plant: str, step: Tip, noise: float, vehicle: Mapping[str, Any], set
     size = noise
 
     def error(x: np.ndarray) -> np.ndarray:
-        """Over the noise, then what is known before."""
+        """Over the noise, then what is known before; of x - 1, as least_squares differentiates by shares of x."""
+        x = x - 1.0
         try:
             omega_1 = _driven(system, plant, step, known, dict(zip(names, x.tolist(), strict=True)))
         except ParameterFileError:
             return np.full(len(step.omega_1) + len(x), 1e3)
         return np.concatenate([(omega_1 - step.omega_1) / size, x / spread])
 
-    def start(C: float, phi_B: float) -> np.ndarray:
-        return np.array([np.log({"C": C, "phi_B": phi_B}.get(name, 1.0)) for name in names])
-
-    begin = min((start(*factors) for factors in product(STIFFNESSES, GAPS)), key=lambda x: float(error(x) @ error(x)))
+    begin = min(
+        (np.array([1.0 + start.get(name, 0.0) for name in names]) for start in starts),
+        key=lambda x: float(error(x) @ error(x)),
+    )
     for _ in range(2):
-        found = least_squares(error, begin, diff_step=1e-3, x_scale=np.minimum(spread, 0.3), max_nfev=12)
+        found = least_squares(error, begin, diff_step=1e-3, x_scale=np.minimum(spread, 0.3), max_nfev=most)
         begin, n = found.x, len(step.omega_1)
         rms = float(np.sqrt(np.mean((found.fun[:n] * size) ** 2)))
         size = max(noise, rms)  # what the model does not explain counts as noise from now on
@@ -209,10 +231,10 @@ def _fitted(plant: str, step: Tip, noise: float, vehicle: Mapping[str, Any], set
     scores = np.array([part.sum(axis=0) for part in np.array_split(J * r[:, None], windows)])
     sandwich = H @ (scores.T @ scores) @ H
     deviations = np.sqrt(np.maximum(np.diag(H), np.diag(sandwich)))
-    at = {name: names.index(name) for name in ("C", "phi_B") if name in names}
-    values = {name: known[name] * float(np.exp(found.x[k])) for name, k in at.items()}
-    halves = {name: Z_95 * float(deviations[k]) for name, k in at.items()}
-    return Step(plant, values, halves, rms, noise)
+    moved = dict(zip(names, (found.x - 1.0).tolist(), strict=True))
+    halves = {name: Z_95 * float(of) for name, of in zip(names, deviations, strict=True) if name in ("C", "phi_B")}
+    values = {name: known[name] * float(np.exp(moved[name])) for name in halves}
+    return Step(plant, values, halves, rms, noise), moved
 
 
 def _plant(settings: Settings) -> System:

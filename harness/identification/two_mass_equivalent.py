@@ -16,7 +16,7 @@ from ...fmus.building.oscillation import oscillation
 from .diagnostics import lacking
 from .drive_train import Parameters
 from .drive_train_response import PEAK, resonance, rolling_tyre
-from .identify import WITH_LOAD, Identified
+from .identify import Identified
 
 
 @cache
@@ -26,18 +26,13 @@ def detailed_over_design() -> float:
     return detailed / design
 
 
-def is_explained(identified: Identified) -> bool:
-    """Whether the parameters are those of the car, and not of what predicts best."""
-    return identified.name == WITH_LOAD and not lacking(identified.found)
-
-
 def equivalent(identified: Identified, p: Parameters) -> Parameters:
     """The car of the vehicle file in the design model.
 
     Args:
         p: as identified, or near.
     """
-    if is_explained(identified):
+    if identified.explained:
         return p
     file = identified.found.centre._replace(J_1=p.J_1, phi_B=p.phi_B, d=0.0)
     tyre = rolling_tyre(file, identified.predictor.behind, identified.speed)

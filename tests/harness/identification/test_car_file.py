@@ -13,9 +13,11 @@ from driveline.harness.identification.car_file import WIDEST_INTERVAL
 from driveline.harness.identification.diagnostics import LACKING
 from driveline.harness.identification.drive_train import Parameters
 from driveline.harness.identification.drive_train_response import resonance, rolling_tyre
+from driveline.harness.identification.driven_plants import diagnose_driven
 from driveline.harness.identification.estimator import PRIORS, UNTOLD, Z_95
 from driveline.harness.identification.identification_report_html import verdict
 from driveline.harness.identification.identify import WITHOUT_LOAD, Identified, Quality
+from driveline.harness.identification.step import Step
 from driveline.harness.identification.two_mass_equivalent import detailed_over_design, equivalent
 from driveline.harness.recordings.source import RecordingError
 from tests.harness.identification.simulated import LOOP, NOISE, identified
@@ -72,6 +74,29 @@ def test_without_the_load_torque_the_design_swings_as_it_was_found() -> None:
     assert swings(car, FOUND) == pytest.approx(FOUND.resonance, rel=1e-4)
     assert "J_2" not in car_file.identified_car(alone)
     assert "effective, without load torque: J_2 carries the vehicle" in car_file.identified_lines(alone)[0]
+
+
+def gap(of: Identified) -> tuple[float, float]:
+    (row,) = (row for row in car_file.found(of) if row.name == "phi_B")
+    return row.value, row.half
+
+
+def test_of_a_car_that_is_not_explained_the_plant_that_was_driven_tells_stiffness_and_gap() -> None:
+    by = Step("ValidationVehicle", {"C": 120.0, "phi_B": 0.17}, {"C": 0.02, "phi_B": 0.01}, 0.2, 0.15)
+    car = replace(LACKS, driven=by)
+    assert car_file.of_car(car) == pytest.approx((120.0, 2.4))
+    assert gap(car) == pytest.approx((0.17, 0.0017))
+    assert car_file.identified_car(car) == {"C": 120.0, "phi_B": 0.17, "tau": 0.00312346}
+    assert "ValidationVehicle, driven by the recorded torque, meets" in next(diagnose_driven(car))
+    wide = replace(by, halves={"C": 0.02, "phi_B": 1.01 * WIDEST_INTERVAL})
+    assert "phi_B" not in car_file.identified_car(replace(LACKS, driven=wide))
+
+
+@pytest.mark.parametrize(("of", "share"), [(LACKS, 0.1), (replace(FOUND, name=WITHOUT_LOAD), 0.1), (FOUND, 0.0)])
+def test_a_gap_that_no_plant_confirms_is_as_wide_as_the_filter_may_be_off(of: Identified, share: float) -> None:
+    value, half = gap(of)
+    assert (half == pytest.approx(share * value)) == (share > 0.0)
+    assert "its interval is that wide" in next(diagnose_driven(of))
 
 
 def test_entries_of_every_type_stay() -> None:
