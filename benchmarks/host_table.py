@@ -36,6 +36,8 @@ PACKAGES = {
     "ecos": "ecospy",
     "OMSimulator": "OMSimulator",
     "pathsim": "pathsim_fmi",
+    "PyFMI": "pyfmi",
+    "FMUContainer": "fmu_manipulation_toolbox",
 }
 
 PROGRAM = "fmusim"
@@ -45,6 +47,7 @@ BUILT = "built from source"
 
 INTEGRATED = {
     '"CoSimulation"': '"ModelExchange"',
+    '"CS"': '"ME"',
     "CoSimulationFMU": "ModelExchangeFMU",
     "--interface-type cs": "--interface-type me",
 }

@@ -79,7 +79,9 @@ def binary_folder(interface: Interface) -> Iterator[str]:
     if interface.fmi == 3:
         folder, other = other, folder
     names = [PurePosixPath(name) for name in _names(interface.path)]
-    libraries = [name for name in names if name.match("binaries/*/*") and name.suffix in EXTENSIONS]
+    libraries = [
+        name for name in names if name.suffix in EXTENSIONS and name.parent.parent == PurePosixPath("binaries")
+    ]
     kinds = document(interface).root.iterfind("*[@modelIdentifier]")
     for identifier in dict.fromkeys(kind.get("modelIdentifier", "") for kind in kinds):
         file = f"{identifier}{fmpy.sharedLibraryExtension}"

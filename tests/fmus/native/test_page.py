@@ -1,5 +1,6 @@
 """The pages on FMUs: the example of a block is built and driven in the loop, the lines for FMPy run."""
 
+import os
 import re
 import subprocess
 import sys
@@ -9,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.host_table import LINES
+from benchmarks.host_table import LINES, PACKAGES
 from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.own_file import fmu_in
 from driveline.fmus.errors import BuildError
@@ -172,14 +173,34 @@ def test_the_lines_for_fmpy_run(both_built: Path, tmp_path: Path, lines: str, an
         assert others == pytest.approx([first], rel=1e-6)
 
 
-@pytest.mark.skipif(find_spec("pathsim_fmi") is None, reason="pathsim-fmi is not installed")
-@pytest.mark.parametrize(("kind", "within"), [("CoSimulationFMU", 2e-4), ("ModelExchangeFMU", 1e-8)])
-def test_the_lines_for_pathsim_run(both_built: Path, tmp_path: Path, kind: str, within: float) -> None:
-    """In co-simulation a step more."""
-    (tmp_path / "build").symlink_to(both_built)
+@pytest.mark.parametrize(
+    ("tool", "other", "within"),
+    [
+        ("libcosim", {}, 1e-12),
+        ("ecos", {}, 1e-12),
+        ("OMSimulator", {}, 1e-9),
+        ("pathsim", {}, 2e-4),  # a step more
+        ("pathsim", {"CoSimulationFMU": "ModelExchangeFMU"}, 1e-8),
+        ("FMUContainer", {}, 1e-12),
+        ("FMUContainer", {"build/native": "build/fmi3"}, 1e-12),
+        ("PyFMI", {}, 1e-9),
+    ],
+)
+def test_the_lines_for_a_tool_give_the_speed_of_fmpy(
+    both_built: Path, fmi3: Path, tmp_path: Path, tool: str, other: dict[str, str], within: float
+) -> None:
+    if find_spec(PACKAGES[tool]) is None:
+        pytest.skip(f"{PACKAGES[tool]} is not installed")
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build" / "native").symlink_to(both_built / "native")
+    (tmp_path / "build" / "fmi3").symlink_to(fmi3)
+    environment = os.environ | {"LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib")}
     speeds = []
-    for lines in (LINES["FMPy"], LINES["pathsim"].replace("CoSimulationFMU", kind)):
-        done = subprocess.run([sys.executable, "-c", lines], cwd=tmp_path, capture_output=True, text=True, check=False)
+    for lines in (LINES["FMPy"], LINES[tool]):
+        for old, new in other.items():
+            lines = lines.replace(old, new)
+        command = [sys.executable, "-c", lines]
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
-        speeds.append(float(done.stdout))
+        speeds.append(float(re.findall(r"([\d.]+)\]?\s*$", done.stdout)[-1]))
     assert speeds[1] == pytest.approx(speeds[0], rel=within)

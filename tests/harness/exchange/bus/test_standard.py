@@ -8,8 +8,9 @@ import ctypes
 import os
 import re
 import subprocess
+from json import dumps
 from pathlib import Path
-from shutil import copyfile
+from shutil import copyfile, make_archive
 from typing import Any
 
 import fmpy
@@ -153,3 +154,22 @@ def test_the_manifest_is_valid(sender: Path, tmp_path: Path) -> None:
     local = re.sub(r'schemaLocation="https://[^"]*"', f'schemaLocation="{of_fmi.as_uri()}"', schema)
     manifest = etree.parse(tmp_path / FOLDER / "fmi-ls-manifest.xml")
     etree.XMLSchema(etree.fromstring(local.encode())).assertValid(manifest)
+
+
+def test_frames_reach_a_node_in_a_container(sender: Path, tmp_path: Path) -> None:
+    """Of fmu-manipulation-toolbox, whose containers hand data to those FMUs alone that stand before the sender."""
+    assembly = pytest.importorskip("fmu_manipulation_toolbox.assembly")
+    make_archive(str(tmp_path / "node"), "zip", example("can-node-triggered-output", tmp_path))
+    (tmp_path / "node.zip").rename(tmp_path / "node.fmu")
+    copyfile(sender, tmp_path / "sender.fmu")
+    links = [["sender.fmu", f"Powertrain.Tx_{k}", "node.fmu", f"CanChannel.Rx_{k}"] for k in ("Data", "Clock")]
+    described = {"name": "bus.fmu", "fmu": ["node.fmu", "sender.fmu"], "link": links}
+    (tmp_path / "bus.json").write_text(dumps(described), encoding="utf-8")
+    assembly.Assembly("bus.json", default_step_size=STEP, fmu_directory=tmp_path).make_fmu(fmi_version=3)
+    told: list[str] = []
+    given = {"omega_wheel_L": 30.0, "omega_wheel_R": 30.0}
+    settings: Any = {"debug_logging": True, "logger": lambda *message: told.append(str(message[-1]))}
+    fmpy.simulate_fmu(
+        str(tmp_path / "bus.fmu"), stop_time=1.0, output_interval=STEP, start_values=given, validate=False, **settings
+    )
+    assert sum(f"Received CAN frame with ID {FRAME.identifier} and length 4" in text for text in told) >= 45

@@ -365,17 +365,17 @@ def test_what_cannot_run_here_is_a_note_and_not_tried(tmp_path):
 @pytest.mark.parametrize(
     ("places", "missing"),
     [
-        (["win64/stranger.dll", "win64/other.dll"], []),
-        (["win64/Stranger.dll"], []),
-        (["win64/other.dll", "linux32/stranger.so"], ["binaries/win64 has no stranger.dll"]),
-        (["darwin64/Stranger.dylib"], ["binaries/darwin64 has no stranger.dylib"]),
+        (["binaries/win64/stranger.dll", "binaries/win64/other.dll", "resources/0/binaries/win64/inner.dll"], []),
+        (["binaries/win64/Stranger.dll"], []),
+        (["binaries/win64/other.dll", "binaries/linux32/stranger.so"], ["binaries/win64 has no stranger.dll"]),
+        (["binaries/darwin64/Stranger.dylib"], ["binaries/darwin64 has no stranger.dylib"]),
     ],
 )
 def test_a_folder_of_binaries_has_one_of_the_name_of_the_fmu(tmp_path, places, missing):
     path = build_stranger(tmp_path)
     with ZipFile(path, "a") as archive:
         for place in places:
-            archive.writestr(f"binaries/{place}", "")
+            archive.writestr(place, "")
     found = {verdict.rule: verdict.problems for verdict in check(path, quick=True)}
     assert found["binary-folder"] == missing
 
