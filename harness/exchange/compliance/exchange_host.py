@@ -14,6 +14,7 @@ from ...base.errors import SimulationError
 from ...base.plain_text import plain
 from ...cosimulation.instance import FMU2Exchanging, FMU3Exchanging, Instance, instantiated
 from ...cosimulation.unpacked_fmu import Unpacked
+from .host import near_start
 
 TOLERANCE = 1e-6
 
@@ -81,12 +82,10 @@ class ExchangeHost:
 
     def apply(self, time: float) -> None:
         """Sets the inputs of an instant; what the solver calls them by."""
-        values = []
-        for v in self._inputs:
-            swing = 0.1 * float(v.nominal or 1.0) * sin(6.0 * (time - self.first) / (self.duration or 1.0))
-            values.append(min(max(float(v.start or 0.0) + swing, float(v.min or -inf)), float(v.max or inf)))
-        if values:
-            cast(Any, self.instance.slave).setFloat64([v.valueReference for v in self._inputs], values)
+        swing = sin(6.0 * (time - self.first) / (self.duration or 1.0))
+        if self._inputs:
+            references = [v.valueReference for v in self._inputs]
+            cast(Any, self.instance.slave).setFloat64(references, [near_start(v, swing) for v in self._inputs])
 
     def _iterate(self) -> None:
         for _ in range(MOST_ITERATIONS):

@@ -99,9 +99,11 @@ class Host:
         return values
 
     def _feed(self) -> None:
-        values = []
-        for v in self.inputs:
-            swing = 0.1 * float(v.nominal or 1.0) * sin(0.1 * self.step)
-            values.append(min(max(float(v.start or 0.0) + swing, float(v.min or -inf)), float(v.max or inf)))
-        if values:
-            self.instance.set(self.inputs, values)
+        if self.inputs:
+            self.instance.set(self.inputs, [near_start(v, sin(0.1 * self.step)) for v in self.inputs])
+
+
+def near_start(variable: ModelVariable, swing: float) -> float:
+    """A value by that share of a tenth of the nominal one away from the start value, within bounds."""
+    value = float(variable.start or 0.0) + 0.1 * float(variable.nominal or 1.0) * swing
+    return min(max(value, float(variable.min or -inf)), float(variable.max or inf))
