@@ -117,8 +117,30 @@ def linear_loop(point: Point) -> LinearLoop:
     Raises:
         NotLinear: the controller is not linear there.
     """
+    return loop_parts(point).loop(point.late)
+
+
+class LoopParts(NamedTuple):
+    """What the loop of a point consists of, whatever its dead time is."""
+
+    point: Point
+    drive: LinearPlant
+    control: LinearController
+    bus: Messages
+
+    def serve(self, point: Point) -> bool:
+        """Whether they are those of another point too."""
+        return replace(self.point, late=point.late) == point
+
+    def loop(self, late: float) -> LinearLoop:
+        """With a dead time in s between controller and motor."""
+        return assembled(self.drive, self.control, self.bus, late)
+
+
+def loop_parts(point: Point) -> LoopParts:
+    """Those of a point; raises as `linear_loop` does."""
     drive = linear_plant(point)
-    return assembled(drive, linear_controller(point, drive), messages(point), point.late)
+    return LoopParts(point, drive, linear_controller(point, drive), messages(point))
 
 
 def assembled(drive: LinearPlant, control: LinearController, bus: Messages, late: float = 0.0) -> LinearLoop:

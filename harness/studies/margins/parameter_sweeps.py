@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .linear_loop import linear_loop
+from .linear_loop import LoopParts, loop_parts
 from .margins import Margins, margins
 from .modes import Mode, alone, drive_train_mode, is_stable, swinging_poles
 from .operating_point import Point
@@ -74,8 +74,10 @@ class Swept(NamedTuple):
 
 def swept(point: Point, sweep: Sweep) -> Iterator[Swept]:
     """The loop of a point with every value of a sweep, with the mean of its samples."""
+    parts: LoopParts | None = None
     for value in sweep.values:
         there = sweep.point(point, value)
-        loop = linear_loop(there).mean
+        parts = parts if parts and parts.serve(there) else loop_parts(there)
+        loop = parts.loop(there.late).mean
         mode = drive_train_mode(loop, alone(there).frequency)
         yield Swept(value, swinging_poles(loop), mode, margins(loop) if is_stable(loop) else None)
