@@ -8,7 +8,6 @@ mode, with sizes of 0, in a process of its own, which it may end. Needs `pip ins
 import ctypes
 import os
 import re
-import sys
 from collections.abc import Callable
 from functools import partial
 from importlib.metadata import version
@@ -19,6 +18,7 @@ from typing import Any
 import fmpy
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
+from driveline.harness.base.interruption import script
 from driveline.harness.loop.places import BUILD, PLANTS
 
 BLOCK = """
@@ -95,4 +95,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    script(main)

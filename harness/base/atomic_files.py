@@ -8,6 +8,8 @@ from contextvars import ContextVar
 from errno import ELOOP, ENOLCK, ENOSPC, ENOTSUP
 from pathlib import Path
 
+from .interruption import unswallowed
+
 try:
     import fcntl
 except ImportError:  # Windows
@@ -58,7 +60,8 @@ def as_before_if_stopped() -> Iterator[None]:
     before: dict[Path, Path | None] = {}
     outer = _before.set(before)
     try:
-        yield
+        with unswallowed():
+            yield
     except KeyboardInterrupt:
         for path, old in before.items():
             if old is None:
@@ -84,7 +87,8 @@ def unchanged_if_stopped(pattern: str, *folders: Path) -> Iterator[None]:
     there = {path: path.read_bytes() for path in found()}
     absent = {each for folder in folders for each in (folder, *folder.parents) if not each.exists()}
     try:
-        yield
+        with unswallowed():
+            yield
     except KeyboardInterrupt:
         for path in found() - there.keys():
             path.unlink()

@@ -61,7 +61,8 @@ def script(main: Callable[[], int | None]) -> NoReturn:
 
 @contextmanager
 def unswallowed() -> Iterator[None]:
-    """What a signal raises within it leaves it, even where the FMU whose Python it met has made a refusal of it."""
+    """What a signal raises within it leaves it, even where the FMU whose Python it met has made a refusal of it, or
+    Python another error, as it does where a class is made."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -20,7 +20,7 @@ from unicodedata import category
 
 from ..base import command_line
 from ..base.errors import DrivelineError
-from ..base.interruption import STDOUT, forget_stdout, named_stdout, reopen_closed_streams, stoppable
+from ..base.interruption import STDOUT, forget_stdout, named_stdout, reopen_closed_streams, stoppable, unswallowed
 from ..base.known_names import nearest
 from ..base.plain_text import plain, quoted, reason
 from ..base.progress import hidden
@@ -307,7 +307,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)  # who reads a pipe need not wait for the end either
     try:
-        with stoppable(), named_stdout():
+        with stoppable(), unswallowed(), named_stdout():
             try:
                 _require_printable(words)
                 args = parser().parse_args(words)

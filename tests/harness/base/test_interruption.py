@@ -14,14 +14,14 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.interruption import Stopped, stoppable, uninterrupted_children
+from driveline.harness.base.interruption import Stopped, stoppable, uninterrupted_children, unswallowed
 from driveline.harness.commands import design
 from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.provenance import BEGINS_ANEW
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
-from tests.signals import started
+from tests.signals import heed_signals, started
 from tests.slow import slow
 
 TWO_CORES = {"LOKY_MAX_CPU_COUNT": 2}
@@ -162,6 +162,42 @@ sys.exit(main())
 """
     done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "driveline: stopped\n")
+
+
+def test_a_signal_before_the_command_line_is_there_is_said_and_one_after_it_changes_nothing() -> None:
+    program = """
+import atexit, os, signal, sys
+from driveline.__main__ import main
+class Stopping:
+    def find_spec(self, name, *_):
+        if name == "driveline.harness":
+            os.kill(os.getpid(), signal.SIGTERM)
+if "early" in sys.argv:
+    sys.meta_path.insert(0, Stopping())
+for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+    atexit.register(os.kill, os.getpid(), number)
+sys.argv[1:] = ["map", "--help"]
+sys.exit(main())
+"""
+    ends = {}
+    for when in ("early", "late"):
+        command = [sys.executable, "-c", program, when]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, preexec_fn=heed_signals, check=False)
+        ends[when] = done.returncode, done.stdout[:5], done.stderr
+    assert ends == {"early": (143, "", "driveline: stopped\n"), "late": (0, "usage", "")}
+
+
+def test_a_stop_that_python_makes_another_error_of_is_a_stop() -> None:
+    class Stopping:
+        def __set_name__(self, owner: type, name: str) -> None:
+            signal.raise_signal(signal.SIGTERM)
+
+    before = signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    try:
+        with pytest.raises(Stopped), stoppable(), unswallowed():
+            type("Stopped", (), {"part": Stopping()})
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def test_a_signal_that_is_ignored_stays_so(capsys: pytest.CaptureFixture[str]) -> None:
