@@ -171,7 +171,10 @@ class Loop:
         time = experiment.time() if alike is None else np.asarray(alike[1]["time"])
         due = changes(parameters, time)
         self._step_size.value = experiment.step_size
-        wires, table = self._known(experiment, time) if alike is None else _copied(*alike)
+        if alike is None:
+            wires, table = self._known(experiment, time)
+        else:
+            wires, table = alike[0], alike[0].layout.table_like(alike[1])
         self.reset()
         self._is_new, self.ended = False, None
         self._initialize(wires, table, initial(parameters), experiment.tolerance)
@@ -271,10 +274,6 @@ class Loop:
                 return
             before, due = row[:], set[int]()
         raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
-
-
-def _copied(wires: Wires, table: Results) -> tuple[Wires, Results]:
-    return wires, wires.layout.table_like(table)
 
 
 def _tolerance(instance: Instance, given: float | None) -> float | None:
