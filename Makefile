@@ -49,7 +49,7 @@ test-all: $(READY) ## all tests
 	$(TEST)
 
 test-target: $(READY) ## the controller's C on an emulated processor; says what to apt-get install
-	$(BIN)/python -m driveline.fmus.target
+	$(BIN)/python -m docs.studies.target_deviations
 	$(BIN)/python -m pytest tests/fmus/target tests/harness/exchange/target
 
 mutation: $(READY) ## a sample of small faults, put into the code one by one: do the tests find them?

@@ -3,18 +3,20 @@
 It needs `apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck`.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
-from driveline.fmus.target.sources import CONTROLLERS
+from driveline.fmus.native.statements import SINGLE
+from driveline.fmus.target.sources import CONTROLLERS, target_sources
 from driveline.harness.cosimulation.wiring import fit
-from driveline.harness.exchange.target.comparison import Comparison, compare
+from driveline.harness.exchange.target.comparison import Comparison, compare, responses
 from driveline.harness.exchange.target.controllers import programs
 from driveline.harness.exchange.target.costs import Size, size_of
 from driveline.harness.exchange.target.offline_cases import recorded
-from driveline.harness.exchange.target.record import TYPICAL, Record, numbers, record
+from driveline.harness.exchange.target.record import Record, numbers, record
 from driveline.harness.loop.places import PLACES, T_S
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -22,6 +24,15 @@ from driveline.harness.views.colours import BLACK, BLUE, VERMILION
 from driveline.harness.views.panels import DASHED, Axis, Curve, Drawing, Panel
 
 from .study import Cell, Column, Measured, Study, Table
+from .target_deviations import findings, reason
+
+OURS = PLACES["controller"][0]
+
+TYPICAL = "prbs"
+"""The manoeuvre in which controllers are compared."""
+
+LESS = ("NoDamping", "LinearObserver", "PaperObserver")
+"""Controllers that have less under the same supervision: nothing, an estimator, and one that knows the gap."""
 
 CASES = (
     Column("samples", "", 0),
@@ -71,6 +82,25 @@ def costs_table(found: Record, told: Mapping[str, Mapping[str, Any]]) -> Table:
     return Table("what", COSTS, rows)
 
 
+def parts_table(typical: Comparison, size: Size) -> Table:
+    """What controllers take."""
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for name in LESS:
+        with programs(CONTROLLERS[name]) as made:
+            most = max(answer.count for answer in responses(made.target(), typical.case)[1:])
+            rows[name] = most, size_of(made).flash
+    rows[OURS] = typical.instructions[1], size.flash
+    return Table("controller", PARTS, rows, f"Most instructions of a sample in {TYPICAL}.")
+
+
+def deviations_table() -> Table:
+    """The rules that are not kept, and why."""
+    found = findings(target_sources(CONTROLLERS[OURS], SINGLE))
+    counts = Counter((each.rule, each.file, reason(each)) for each in found)
+    rows: dict[str, tuple[Cell, ...]] = {f"{rule} {file}": (n, why) for (rule, file, why), n in sorted(counts.items())}
+    return Table("rule, file", (Column("found", "", 0), Column("why")), rows)
+
+
 def torques(found: Comparison) -> Drawing:
     """The torque reference on the target and of the model, and their distance."""
     target, model = found.traces
@@ -86,16 +116,14 @@ def measure() -> Measured:
     found = record(Settings())
     told = numbers(found)
     loops = {name: tuple(of.values()) for name, of in told["loops"].items()}
-    parts = {name: tuple(of.values()) for name, of in told["parts"].items()}
-    deviations = {name: (of["found"], of["why"]) for name, of in told["deviations"].items()}
     typical = next(each for each in found.comparisons if each.case.name == TYPICAL)
     return Measured(
         {
             "cases": cases_table(found.comparisons),
             "loops": Table("manoeuvre", LOOPS, loops),
-            "parts": Table("controller", PARTS, parts, f"Most instructions of a sample in {TYPICAL}."),
+            "parts": parts_table(typical, found.size),
             "costs": costs_table(found, told),
-            "deviations": Table("rule, file", (Column("found", "", 0), Column("why")), deviations),
+            "deviations": deviations_table(),
         },
         {"torques": torques(typical)},
     )
@@ -109,7 +137,7 @@ def again() -> dict[str, Table]:
     system = loop(settings)
     own = fit(system).interfaces["controller"]
     inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
-    with programs(CONTROLLERS[PLACES["controller"][0]]) as made:
+    with programs(CONTROLLERS[OURS]) as made:
         compared = compare(made, recorded(MANOEUVRES[SENTINEL], system, inputs, settings), outputs)
         size = size_of(made)
     return {"cases": cases_table([compared]), "costs": Table("what", COSTS, sizes(size))}

@@ -20,8 +20,8 @@ C_FILES = Path(__file__).parent / "c"
 
 COMPILER = "arm-none-eabi-gcc"
 
-PACKAGES = ("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm", "cppcheck")
-"""Of Debian and Ubuntu: the compiler, its C library, the emulator, and what checks the C for MISRA."""
+PACKAGES = ("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm")
+"""Of Debian and Ubuntu: the compiler, its C library and the emulator."""
 
 PROCESSOR = ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16")
 
@@ -80,7 +80,7 @@ def host_program(sources: Mapping[str, str], folder: Path) -> Path:
 def require_packages(*others: str) -> None:
     """
     Args:
-        others: programs that are needed as well.
+        others: programs that are needed as well, by the names of their packages.
 
     Raises:
         CompilerError: the compiler, its library, the emulator or another is not installed; the text says what to
@@ -90,7 +90,7 @@ def require_packages(*others: str) -> None:
     if not lacking and not Path(output_of(COMPILER, "-print-file-name=nano.specs")).is_absolute():
         lacking = ["nano.specs"]
     if lacking:
-        raise CompilerError(f"there is no {' and no '.join(lacking)}: apt-get install {' '.join(PACKAGES)}")
+        raise CompilerError(f"there is no {' and no '.join(lacking)}: apt-get install {' '.join((*PACKAGES, *others))}")
 
 
 def written(sources: Mapping[str, str], others: tuple[str, ...], folder: Path) -> list[str]:

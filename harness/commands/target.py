@@ -119,7 +119,7 @@ class Record(Loop, Replacing, Printing):
     drives every manoeuvre in the loop, see `driveline target build`.
 
     The output folder gets numbers.json and, for every case, inputs and torques as CSV. It needs
-    `apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm cppcheck`.
+    `apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm`.
 
     examples:
       driveline target record --controller SpeedWashout --output results/washout

@@ -1,7 +1,6 @@
 """The test of the controller on the target: off-line, in the loop and under a timer; its numbers and files."""
 
 import json
-from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ....fmus.native.statements import SINGLE
-from ....fmus.target.deviations import Finding, findings, reason
 from ....fmus.target.sources import CONTROLLERS, target_sources
 from ...base.atomic_files import write_text
 from ...base.csv_file import write_csv
@@ -19,23 +17,12 @@ from ...cosimulation.wiring import fit
 from ...loop.places import T_S
 from ...loop.settings import Settings, loop
 from ...manoeuvres.catalogue import USUAL_MANOEUVRES
-from .comparison import Comparison, InLoop, compare, in_loop, responses
+from .comparison import Comparison, InLoop, compare, in_loop
 from .controllers import programs
 from .costs import Schedule, Size, schedule, size_of
-from .offline_cases import Case, cases_in_loop, random_inputs, random_states
+from .offline_cases import cases_in_loop, random_inputs, random_states
 
 NUMBERS = "numbers.json"
-
-TYPICAL = "prbs"
-"""The manoeuvre in which controllers are compared."""
-
-
-class Part(NamedTuple):
-    """What a controller takes: most instructions in a sample of one manoeuvre, and flash in bytes."""
-
-    controller: str
-    instructions: int
-    flash: int
 
 
 class Record(NamedTuple):
@@ -45,25 +32,19 @@ class Record(NamedTuple):
     loops: Sequence[InLoop]
     schedule: Schedule
     size: Size
-    findings: Sequence[Finding] = ()
-    parts: Sequence[Part] = ()
 
     @property
     def passed(self) -> bool:
-        """Whether no bit differs, the torque of every case that the loop gave is as near to double precision as it
-        must, and every deviation from the rules has its reason."""
+        """Whether no bit differs, and the torque of every case that the loop gave is as near to double precision as it
+        must."""
         near = all(each.margin <= 1.0 or each.case.drawn for each in self.comparisons)
         same = not any(each.differing for each in (*self.comparisons, *self.loops))
-        explained = all(reason(each) for each in self.findings)
         kept = self.schedule.missed == 0 and all(each.finite for each in self.comparisons)
-        return near and same and explained and kept
+        return near and same and kept
 
 
-STEPS = 1 + (len(USUAL_MANOEUVRES) + 1) + (len(USUAL_MANOEUVRES) + 4) + len(USUAL_MANOEUVRES)
-"""For the progress: the checks; what the loop gives; these cases and those that are drawn; the target in the loop."""
-
-PARTS = ("NoDamping", "LinearObserver", "PaperObserver")
-"""Controllers that have less under the same supervision: nothing, an estimator, and one that knows the gap."""
+STEPS = (len(USUAL_MANOEUVRES) + 1) + (len(USUAL_MANOEUVRES) + 4) + len(USUAL_MANOEUVRES)
+"""For the progress: what the loop gives; these cases and those that are drawn; the target in the loop."""
 
 
 def record(settings: Settings) -> Record:
@@ -73,7 +54,7 @@ def record(settings: Settings) -> Record:
         settings: of the loop with the controller, which is one of the project.
 
     Raises:
-        CompilerError: a compiler, the emulator or the checker is missing.
+        CompilerError: a compiler or the emulator is missing.
         SimulationError: the target was lost, hung or crashed.
     """
     require_constant(settings.parameters, "the C on the target")
@@ -85,21 +66,15 @@ def record(settings: Settings) -> Record:
     values |= {name: settings.parameters.get(f"controller.{name}", value) for name, value in values.items()}
     fmu = CONTROLLERS[controller].started_with(values)
     sources = target_sources(fmu, SINGLE)
-    with progress(STEPS, "target") as done:
-        found = findings(sources)
-        with programs(fmu) as made:
-            cases = _counted(cases_in_loop(system, interfaces, inputs, settings), done, 1)
-            first = 1 + len(cases)
-            cases += random_inputs(cases, settings.seed)
-            comparisons = _counted((compare(made, case, outputs) for case in cases), done, first)
-            states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
-            comparisons.append(compare(made, random_states(cases[-2], states, settings.seed), outputs))
-            loops = _counted(in_loop(made, controller, system, inputs, settings), done, first + len(comparisons))
-            size = size_of(made)
-            typical = next(each for each in comparisons if each.case.name == TYPICAL)
-            parts = [_part(name, typical.case) for name in PARTS if name != controller]
-            parts.append(Part(controller, typical.instructions[1], size.flash))
-            return Record(comparisons, loops, schedule(sources), size, found, parts)
+    with progress(STEPS, "target") as done, programs(fmu) as made:
+        cases = _counted(cases_in_loop(system, interfaces, inputs, settings), done, 0)
+        first = len(cases)
+        cases += random_inputs(cases, settings.seed)
+        comparisons = _counted((compare(made, case, outputs) for case in cases), done, first)
+        states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
+        comparisons.append(compare(made, random_states(cases[-2], states, settings.seed), outputs))
+        loops = _counted(in_loop(made, controller, system, inputs, settings), done, first + len(comparisons))
+        return Record(comparisons, loops, schedule(sources), size_of(made))
 
 
 def _counted(pieces: Iterable[Any], done: Callable[[float], None], first: int) -> list[Any]:
@@ -109,12 +84,6 @@ def _counted(pieces: Iterable[Any], done: Callable[[float], None], first: int) -
         done(count)
         found.append(piece)
     return found
-
-
-def _part(controller: str, case: Case) -> Part:
-    with programs(CONTROLLERS[controller]) as made:
-        most = max(answer.count for answer in responses(made.target(), case)[1:])
-        return Part(controller, most, size_of(made).flash)
 
 
 def announce(found: Record) -> None:
@@ -134,17 +103,14 @@ def announce(found: Record) -> None:
 def numbers(found: Record) -> dict[str, dict[str, Any]]:
     """What was found as tables: rows by name, each with a value by column.
 
-    Torques are in N.m, memory in bytes, costs `driven` and `drawn` the most instructions of a sample, deviations the
-    rules that are not kept, by rule and file. For the rest see `Comparison`, `InLoop`, `Part`, `Size` and `Schedule`.
+    Torques are in N.m, memory in bytes, costs `driven` and `drawn` the most instructions of a sample. For the rest see
+    `Comparison`, `InLoop`, `Size` and `Schedule`.
     """
-    counts = Counter((each.rule, each.file, reason(each)) for each in found.findings)
     most = {each.case.name: each.instructions[1] for each in found.comparisons}
     drawn = {each.case.name for each in found.comparisons if each.case.drawn}
     return {
         "cases": {each.case.name: _columns(each, *Comparison._fields[1:8]) for each in found.comparisons},
         "loops": {each.manoeuvre: _columns(each, *InLoop._fields[1:]) for each in found.loops},
-        "parts": {each.controller: _columns(each, *Part._fields[1:]) for each in found.parts},
-        "deviations": {f"{rule} {file}": {"found": n, "why": why} for (rule, file, why), n in sorted(counts.items())},
         "costs": {
             "driven": max(count for name, count in most.items() if name not in drawn),
             "drawn": max((most[name] for name in drawn), default=0),

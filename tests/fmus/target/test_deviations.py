@@ -4,9 +4,9 @@ import shutil
 
 import pytest
 
+from docs.studies.target_deviations import CHECKER, DEVIATIONS, GENERATED, Finding, findings, reason
 from driveline.fmus.native.compiler import CompilerError
 from driveline.fmus.native.statements import SINGLE
-from driveline.fmus.target.deviations import CHECKER, DEVIATIONS, GENERATED, Finding, findings, reason
 from driveline.fmus.target.image import require_packages
 from driveline.fmus.target.sources import CONTROLLERS, target_sources
 from tests.skipping import skipped_if_impossible

@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.fmus.target.deviations import Finding
 from driveline.fmus.target.sources import CONTROLLERS
 from driveline.harness.exchange.target.comparison import Comparison, InLoop, compare, responses
 from driveline.harness.exchange.target.controllers import Programs, programs
 from driveline.harness.exchange.target.costs import Schedule, Size, size_of
 from driveline.harness.exchange.target.offline_cases import SAMPLES, Case, random_inputs, random_states, recorded
-from driveline.harness.exchange.target.record import NUMBERS, Part, Record, numbers, signals, write
+from driveline.harness.exchange.target.record import NUMBERS, Record, numbers, signals, write
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.models.damping_controller import BLOCK
@@ -121,19 +120,14 @@ def test_no_arithmetic_is_in_double_precision(target: Programs) -> None:
 
 def test_the_numbers_are_those_that_were_found(braked: Comparison, size: Size, tmp_path: Path) -> None:
     loops = [InLoop("launch_brake", 0, T_ref=0.01, T_gear=0.02, rms=0.001)]
-    findings = [Finding("11.4", "scheduler.c", f"scheduler.c:{line}") for line in (1, 2)]
     drawn = braked._replace(case=braked.case._replace(name="random states", drawn=True), instructions=(600.0, 950))
-    found = Record([braked, drawn], loops, KEPT, size, findings, [Part("NoDamping", 700, 5000)])
+    found = Record([braked, drawn], loops, KEPT, size)
     given = numbers(found)
     assert given["loops"] == {"launch_brake": {"differing": 0, "T_ref": 0.01, "T_gear": 0.02, "rms": 0.001}}
     assert given["cases"]["launch_brake"]["samples"] == len(braked.case.inputs)
     assert given["cases"]["random states"]["instructions"] == (600.0, 950)
     assert (given["costs"]["driven"], given["costs"]["drawn"]) == (braked.instructions[1], 950)
     assert given["costs"]["flash"] == size.flash
-    assert given["parts"] == {"NoDamping": {"instructions": 700, "flash": 5000}}
-    (deviation,) = given["deviations"].items()
-    assert (deviation[0], deviation[1]["found"]) == ("11.4 scheduler.c", 2)
-    assert deviation[1]["why"].startswith("registers have addresses")
     files = write(found, tmp_path)
     assert [path.name for path in files] == [NUMBERS, "launch_brake.csv", "random_states.csv"]
     assert json.loads(files[0].read_text()) == json.loads(json.dumps(given))

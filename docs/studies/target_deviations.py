@@ -1,13 +1,18 @@
-"""What MISRA C:2012 and further warnings of the compiler find in the C of the target, and why it stays."""
+"""What MISRA C:2012 and further warnings of the compiler find in the C of the target, and why it stays.
+
+`python -m docs.studies.target_deviations` says what is missing to look, and to run the controller on the target.
+"""
 
 import re
+import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from ..child_process import run
-from .image import BOARD, COMPILER, FLAGS, LINK, PROCESSOR, SCHEDULER, require_packages, written
+from driveline.fmus.child_process import run
+from driveline.fmus.native.compiler import CompilerError
+from driveline.fmus.target.image import BOARD, COMPILER, FLAGS, LINK, PROCESSOR, SCHEDULER, require_packages, written
 
 CHECKER = "cppcheck"
 
@@ -116,3 +121,10 @@ def _complaints(command: list[str], folder: Path, environment: Mapping[str, str]
     done = run(command, folder, environment)
     done.check_returncode()
     return done.stderr
+
+
+if __name__ == "__main__":
+    try:
+        require_packages(CHECKER)
+    except CompilerError as lacking:
+        sys.exit(str(lacking))
