@@ -3,6 +3,7 @@
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
@@ -88,7 +89,8 @@ def variable_names(interface: Interface) -> Iterator[str]:
     others="fmpy VDMCheck",
 )
 def structure(interface: Interface) -> Iterator[str]:
-    """What is missing in it, there twice, or of another kind."""
+    """What is missing in it, there twice, of another kind, or out of order. In co-simulation alone Derivatives count in
+    FMI 2.0 only with directional derivatives."""
     found = document(interface)
     listed = {section: found.unknowns(section) for section in SECTIONS[interface.fmi]}
     for section, unknowns in listed.items():
@@ -106,8 +108,18 @@ def structure(interface: Interface) -> Iterator[str]:
             yield f"{found.variables[unknown.key].name} in Derivatives must have the attribute derivative"
     initial = {key for key, v in found.variables.items() if _is_initial_unknown(v)}
     of_states = {*found.states, *found.states.values()} & found.variables.keys()
-    initial |= {key for key in of_states if found.variables[key].model.initial in ("approx", "calculated")}
-    yield from _differing(found.variables, "InitialUnknowns", listed, initial)
+    unknown = {key for key in of_states if found.variables[key].model.initial in ("approx", "calculated")} - initial
+    if interface.fmi == 2 and not (
+        interface.description.modelExchange or found.claims("providesDirectionalDerivatives", "CoSimulation")
+    ):
+        unknown &= {each.key for each in listed["InitialUnknowns"]}
+    yield from _differing(found.variables, "InitialUnknowns", listed, initial | unknown)
+    numbers = [int(unknown.key) for unknown in listed["InitialUnknowns"] if interface.fmi == 2]
+    for before, after in pairwise(numbers):
+        if before > after:
+            names = found.variables[str(after)].name, found.variables[str(before)].name
+            yield f"{names[0]} stands behind {names[1]} in InitialUnknowns, and before it among the variables"
+            break
     if interface.fmi == 3:
         clocked = {key for key, v in found.variables.items() if "previous" in v.given}
         yield from _differing(found.variables, "ClockedStates", listed, clocked)

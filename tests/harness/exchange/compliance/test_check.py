@@ -299,6 +299,11 @@ def test_an_end_that_the_fmu_wants_is_no_error(tmp_path, fmi):
     assert f"answered fmi{fmi}DoStep with discard" in broken(build_stranger(tmp_path, fmi=fmi, **ENDS))["runs"][1]
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_step_that_is_too_long_may_be_discarded(tmp_path, fmi):
+    assert "steps" not in broken(build_stranger(tmp_path, fmi=fmi, IN_DO_STEP="if (step > 0.005) return 2"))
+
+
 def test_memory_that_is_kept_or_shared_is_found(tmp_path):
     keeps = "((void *(*)(size_t, size_t))((void **)callbacks)[1])(1, 8)"
     found = broken(build_stranger(tmp_path, IN_INSTANTIATE=keeps))["memory"]
@@ -330,9 +335,8 @@ def test_intermediate_updates_are_asked_for_if_there_is_something_to_exchange(tm
 
 def test_derivatives_at_a_communication_point_are_compared_where_values_are_computed_anew(tmp_path):
     """FMI forbids to read before the next step what was set: an FMU may give out what it has computed in the last."""
-    asks = {"IN_DIRECTIONAL": "du[0] = 1.0; return 0"}
     for name, follows, found in (("kept", "", False), ("anew", "if (r[0] >= KEPT) values[0] = 3.0 * kept[0]", True)):
-        path = build_stranger(tmp_path, name, IN_GET_REAL=follows, **asks)
+        path = build_stranger(tmp_path, name, IN_GET_REAL=follows, IN_DIRECTIONAL="du[0] = 1.0; return 0")
         claim = r'\1 providesDirectionalDerivative="true"'
         path = replaced(path, tmp_path, r'(modelIdentifier="stranger")', claim)
         assert ("directional-derivatives" in broken(path)) is found

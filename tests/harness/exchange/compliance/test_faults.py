@@ -63,6 +63,14 @@ DESCRIBED = [
     ),
     (2, [], {}, ('<InitialUnknowns><Unknown index="3"/>', "<InitialUnknowns>"), "structure", r"lacks der\(s\)"),
     (
+        2,
+        [],
+        {},
+        ('<Unknown index="3"/><Unknown index="4"/></I', '<Unknown index="4"/><Unknown index="3"/></I'),
+        "structure",
+        r"der\(s\) stands behind der\(v\) in InitialUnknowns",
+    ),
+    (
         3,
         [],
         {},
