@@ -145,17 +145,6 @@ def updated(entries: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, A
     return {**{name: value for name, value in entries.items() if name not in replaced}, **known}
 
 
-def differences(entries: Mapping[str, Any], others: Mapping[str, Any], taken: Collection[str]) -> dict[str, Any]:
-    """What is to be set where entries are replaced by others, with what follows.
-
-    Args:
-        entries, others: as of `of_one_car`, and the errors too.
-    """
-    before, after = of_one_car(entries, taken), of_one_car(others, taken)
-    changed = {name: value for name, value in after.items() if before.get(name) != value}
-    return changed | {name: DEFAULT_CAR[name] for name in before.keys() - after.keys()}
-
-
 @cache
 def _common(given: frozenset[tuple[str, float]]) -> dict[str, float]:
     """What follows for both plants and the design: what no entry tells, as it is estimated; C, if the file has the
