@@ -51,85 +51,73 @@ def found(folder, description, files, fmi):
     return {v.rule: "\n".join(v.problems) for v in check(path) if v.problems and v.severity != "note"}
 
 
+def case(fmi, fault, rule, finding, made=(), files=None):
+    """What makes a good FMU of the oscillator, files beside it, the fault, the rule and what it says."""
+    return fmi, made, files or {}, fault, rule, finding
+
+
 DESCRIBED = [
-    # FMI, what makes a good FMU of the oscillator, files beside it, the fault, the rule and what it says
-    (
+    case(
         2,
-        [("guid=", 'variableNamingConvention="structured" guid=')],
-        {},
         ('name="s"', 'name="s s"'),
         "variable-names",
         "not a legal variable name",
+        made=[("guid=", 'variableNamingConvention="structured" guid=')],
     ),
-    (2, [], {}, ('<InitialUnknowns><Unknown index="3"/>', "<InitialUnknowns>"), "structure", r"lacks der\(s\)"),
-    (
+    case(2, ('<InitialUnknowns><Unknown index="3"/>', "<InitialUnknowns>"), "structure", r"lacks der\(s\)"),
+    case(
         2,
-        [],
-        {},
         ('<Unknown index="3"/><Unknown index="4"/></I', '<Unknown index="4"/><Unknown index="3"/></I'),
         "structure",
         r"der\(s\) stands behind der\(v\) in InitialUnknowns",
     ),
-    (
-        3,
-        [],
-        {},
-        ("<InitialUnknown ", '<InitialUnknown valueReference="0"/><InitialUnknown '),
-        "structure",
-        "not have s",
-    ),
-    (2, [], {}, ('stopTime="1"', 'startTime="2" stopTime="1"'), "experiment-numbers", "not after startTime = 2"),
-    (3, [], {}, ('stopTime="1"', 'stopTime="1" tolerance="0"'), "experiment-numbers", "tolerance = 0 is not above 0"),
-    (
+    case(3, ("<InitialUnknown ", '<InitialUnknown valueReference="0"/><InitialUnknown '), "structure", "not have s"),
+    case(2, ('stopTime="1"', 'startTime="2" stopTime="1"'), "experiment-numbers", "not after startTime = 2"),
+    case(3, ('stopTime="1"', 'stopTime="1" tolerance="0"'), "experiment-numbers", "tolerance = 0 is not above 0"),
+    case(2, ('<Real derivative="1"', '<Real reinit="true" derivative="1"'), "reinit", r"der\(s\) has reinit, and is"),
+    case(2, ('oscillator"/>', 'oscillator" canSerializeFMUstate="true"/>'), "capabilities", "but not canGetAndSet"),
+    case(
         2,
-        [],
-        {},
-        ('<Real derivative="1"', '<Real reinit="true" derivative="1"'),
-        "reinit",
-        r"der\(s\) has reinit, and is",
-    ),
-    (2, [], {}, ('oscillator"/>', 'oscillator" canSerializeFMUstate="true"/>'), "capabilities", "but not canGetAndSet"),
-    (
-        2,
-        [],
-        {},
         ('oscillator"/>', 'oscillator"><SourceFiles><File name="x.c"/></SourceFiles></ModelExchange>'),
         "sources",
         "sources/x.c is named, and is not there",
     ),
-    (2, [], {}, ('<Real start="1"', '<Real nominal="0" start="1"'), "nominal", "nominal value of s is 0"),
-    (3, [(END, CLOCK + END), EVENTS], {}, (' intervalDecimal="0.1"', ""), "clocks", "without intervalDecimal"),
-    (3, [(END, CLOCK + END), EVENTS], {}, ('Decimal="0.1"', 'Decimal="0"'), "clocks", "is 0, which is not above 0"),
-    (3, [(END, CLOCK + END), EVENTS], {}, (' hasEventMode="true"', ""), "clocks", "no event mode"),
-    (3, [], {}, (END, '<Int32 name="k" valueReference="7" clocks="0"/>' + END), "clocks", "names 0, which is no clock"),
-    (3, [(END, VECTOR + END)], {}, ('start="1 2 3"', 'start="1 2"'), "dimensions", "2 start values for 3 elements"),
-    (
+    case(2, ('<Real start="1"', '<Real nominal="0" start="1"'), "nominal", "nominal value of s is 0"),
+    case(3, (' intervalDecimal="0.1"', ""), "clocks", "without intervalDecimal", made=[(END, CLOCK + END), EVENTS]),
+    case(
+        3, ('Decimal="0.1"', 'Decimal="0"'), "clocks", "is 0, which is not above 0", made=[(END, CLOCK + END), EVENTS]
+    ),
+    case(3, (' hasEventMode="true"', ""), "clocks", "no event mode", made=[(END, CLOCK + END), EVENTS]),
+    case(3, (END, '<Int32 name="k" valueReference="7" clocks="0"/>' + END), "clocks", "names 0, which is no clock"),
+    case(
+        3, ('start="1 2 3"', 'start="1 2"'), "dimensions", "2 start values for 3 elements", made=[(END, VECTOR + END)]
+    ),
+    case(
         3,
-        [("<DefaultExperiment", OPTION), (END, CHOICE + END)],
-        {},
         ('start="1"/></M', 'start="7"/></M'),
         "enumerations",
         "starts at 7, which is no item of E",
+        made=[("<DefaultExperiment", OPTION), (END, CHOICE + END)],
     ),
-    (3, [], {TERMINALS: TERMINAL}, (TERMINALS, TERMINAL.replace('"s"', '"u"')), "terminals", "names u, which is no"),
-    (
+    case(
+        3, (TERMINALS, TERMINAL.replace('"s"', '"u"')), "terminals", "names u, which is no", files={TERMINALS: TERMINAL}
+    ),
+    case(
         3,
-        [],
-        {
-            MANIFESTS["fmi-ls-xcp"]: MANIFEST.format("fmi-ls-xcp"),
-            "extra/org.fmi-standard.fmi-ls-xcp/a.a2l": "/begin PROJECT",
-        },
         ("extra/org.fmi-standard.fmi-ls-xcp/a.a2l", ""),
         "layered-standards",
         "has no PROJECT",
+        files={
+            MANIFESTS["fmi-ls-xcp"]: MANIFEST.format("fmi-ls-xcp"),
+            "extra/org.fmi-standard.fmi-ls-xcp/a.a2l": "/begin PROJECT",
+        },
     ),
-    (
+    case(
         3,
-        [],
-        {MANIFESTS["fmi-ls-bus"]: MANIFEST.format("fmi-ls-bus"), TERMINALS: BUS_TERMINAL},
         (TERMINALS, TERMINAL),
         "layered-standards",
         "has no network terminal",
+        files={MANIFESTS["fmi-ls-bus"]: MANIFEST.format("fmi-ls-bus"), TERMINALS: BUS_TERMINAL},
     ),
 ]
 
