@@ -5,7 +5,6 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from math import inf
-from typing import NamedTuple
 
 from fmpy import read_model_description
 from fmpy.model_description import ModelVariable, ValidationError
@@ -297,18 +296,11 @@ def derivatives(interface: Interface) -> Iterator[str]:
         seen[state.name] = rate.name
 
 
-class Capability(NamedTuple):
-    """What may be claimed only together with something else, by the names of attributes in FMI 2.0 or 3.0."""
-
-    claim: str
-    needs: str
-
-
-CAPABILITIES = (
-    Capability("canSerializeFMUstate", "canGetAndSetFMUstate"),
-    Capability("canSerializeFMUState", "canGetAndSetFMUState"),
-    Capability("canReturnEarlyAfterIntermediateUpdate", "providesIntermediateUpdate"),
-)
+NEEDED = {
+    "canSerializeFMUState": "canGetAndSetFMUState",
+    "canReturnEarlyAfterIntermediateUpdate": "providesIntermediateUpdate",
+}
+"""What may be claimed only together with something else, by the names of FMI 3.0."""
 
 
 @DESCRIPTION_RULES.rule(
@@ -316,10 +308,11 @@ CAPABILITIES = (
 )
 def capabilities(interface: Interface) -> Iterator[str]:
     """Claims that cannot be."""
-    for kind in document(interface).root:
-        for claim, needs in CAPABILITIES:
-            if kind.get(claim) in TRUE and kind.get(needs) not in TRUE:
-                yield f"{kind.tag} has {claim}, but not {needs}"
+    found = document(interface)
+    for kind in found.root:
+        for claim, needs in NEEDED.items():
+            if found.claims(claim, kind.tag) and not found.claims(needs, kind.tag):
+                yield f"{kind.tag} has {found.called(claim)}, but not {found.called(needs)}"
 
 
 @DESCRIPTION_RULES.rule(

@@ -99,8 +99,11 @@ class Document:
 
     def claims(self, capability: str, *kinds: str) -> bool:
         """Whether it claims a capability, by its name in FMI 3.0, for one of these kinds; none given: for any."""
-        name = CALLED_IN_FMI2.get(capability, capability) if self.fmi == 2 else capability
-        return any(kind.get(name) in TRUE for kind in self.root if not kinds or kind.tag in kinds)
+        return any(kind.get(self.called(capability)) in TRUE for kind in self.root if not kinds or kind.tag in kinds)
+
+    def called(self, capability: str) -> str:
+        """What a capability of FMI 3.0 is called in this version."""
+        return CALLED_IN_FMI2.get(capability, capability) if self.fmi == 2 else capability
 
     def unknowns(self, section: str) -> list[Unknown]:
         """Those of a section, of SECTIONS."""
