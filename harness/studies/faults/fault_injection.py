@@ -161,7 +161,7 @@ class FaultRunner:
         parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise)
         settings = running(self._settings[plant].replace(control=control))
         parameters |= dict(settings.parameters) | _parameters(faults, noise)
-        inputs = signals(manoeuvre, control)
+        inputs = dict(signals(manoeuvre, control))
         for fault in faults:
             if fault.kind.number == SWITCHED_OFF:
                 inputs["controller.enable"] = partial(np.less_equal, fault.end)

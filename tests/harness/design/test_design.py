@@ -111,25 +111,19 @@ def test_a_faster_drive_train_keeps_its_damping_ratio_and_a_slower_one_uses_up_t
     assert slow_motor["k_d"] == pytest.approx(default["k_d"] * sqrt(0.5), rel=STORED_DIGITS), "the ratio asks for more"
 
 
-def test_a_slower_motor_is_looked_ahead_further_as_far_as_the_controller_can() -> None:
-    """As the square of the dead time, of which 3 ms are not the motor's."""
+@pytest.mark.parametrize(
+    ("name", "power", "just", "beyond", "most"),
+    [("T_pred", 2, 0.0205, 0.021, 0.02), ("T_pred_land", 1, 0.029, 0.031, 0.05)],
+)
+def test_a_slower_motor_is_looked_ahead_further_as_far_as_the_controller_can(name, power, just, beyond, most) -> None:
+    """As the square of the dead time, of which 3 ms are not the motor's; for a landing as that time."""
 
     def ahead(tau: float) -> float:
-        return gains_of(motor=MOTOR._replace(tau=tau))["T_pred"]
+        return gains_of(motor=MOTOR._replace(tau=tau))[name]
 
-    dead = [0.003 + sqrt(2.0) * tau for tau in (0.003, 0.012)]
-    assert ahead(0.012) / ahead(0.003) == pytest.approx((dead[1] / dead[0]) ** 2)
-    assert ahead(0.0205) < ahead(0.021) == 0.02
-
-
-def test_a_landing_is_looked_ahead_over_the_dead_time() -> None:
-    """As far as the controller can."""
-
-    def ahead(tau: float) -> float:
-        return gains_of(motor=MOTOR._replace(tau=tau))["T_pred_land"]
-
-    assert ahead(0.006) / ahead(0.003) == pytest.approx((0.003 + sqrt(2.0) * 0.006) / (0.003 + sqrt(2.0) * 0.003))
-    assert ahead(0.029) < ahead(0.031) == 0.05
+    dead = [0.003 + sqrt(2.0) * tau for tau in (0.003, 0.006)]
+    assert ahead(0.006) / ahead(0.003) == pytest.approx((dead[1] / dead[0]) ** power)
+    assert ahead(just) < ahead(beyond) == most
 
 
 def test_a_softer_or_harder_car_has_another_character() -> None:

@@ -44,7 +44,6 @@ def test_the_drive_brakes_at_the_end_and_has_plateaus():
     drive = MANOEUVRES["drive"]
     assert drive.T_brake([0.0, 16.2, 16.4, 16.6, 20.0]) == pytest.approx([0, 0, 650, 1300, 1300])
     assert drive.T_driver([0.6, 4.55, 16.15, 20.0]) == pytest.approx([56, 53.5, 10.5, -24])
-    drive = MANOEUVRES["drive"]
     for end in drive.plateau_ends:
         assert np.ptp(drive.T_driver(np.linspace(end - 0.45, end, 50))) == 0.0
         assert drive.T_driver(end + 0.05) != drive.T_driver(end)

@@ -82,8 +82,6 @@ def test_brake_and_grade_are_the_force_but_for_the_band_of_the_drive_train():
     done = -manoeuvre.T_brake(town.t) / 0.29 - 1450.0 * 9.81 * np.sin(manoeuvre.slope(town.t))
     assert done[rolling] == pytest.approx(F[rolling])
     assert manoeuvre.T_brake(town.t)[rolling].max() > 100.0
-    town = Track.of(read_drive(TOWN_DRIVE))
-    manoeuvre = drive(town, LOAD, needed_force(town, LOAD))
     t = np.arange(2.5, 22.0, 0.002)
     for torque in (manoeuvre.T_brake(t), 0.29 * 1450.0 * 9.81 * np.sin(manoeuvre.slope(t))):
         assert band_rms(torque / 9.0, 0.002) < 0.005 < 2.0 < torque.std() / 9.0
