@@ -17,19 +17,29 @@ WORDS = """
     - -- --- ---- . ? ?? ??? # na n/a n.a. n.a nan -nan +nan nan(ind) -nan(ind) null (null) <null> \\n <na> nat none nil
     nv n/v k.a. void invalid missing <missing> undefined undef n.def. unavailable sna nodata no_data ungültig
     --.- -.- .. err error fehler bad timeout overflow ovr #ovr #inv
-    #n/a #na #nv #value! #wert! #ref! #bezug! #num! #zahl! #name? #null! #div/0!
+    #n/a #na #nv #div/0! offline
 """
 
 EMPTY = frozenset(WORDS.split()) | {
-    *("", "no data", "not available", "no value", "signal not available", "not a number", "k. a.")
+    *(
+        "",
+        "no data",
+        "not available",
+        "no value",
+        "signal not available",
+        "not a number",
+        "k. a.",
+        "bad input",
+        "i/o timeout",
+    )
 }
 """What loggers and spreadsheets write where there is no value, in small letters."""
 
 SPELLINGS = sorted({spelling for word in EMPTY for spelling in (word, word.upper(), word.title(), word.capitalize())})
 """Of these words, for a parser that looks for them letter by letter."""
 
-NO_NUMBER = re.compile(r"[+-]?1\.#(qnan|snan|ind|nan)0*")
-"""As C of Microsoft prints it."""
+NO_NUMBER = re.compile(r"[+-]?(1\.#(qnan|snan|ind|nan)0*|nan\(\w*\))|#\w+[!?]|[-.,#*]+")
+"""As libraries of C print it, errors of spreadsheets, and what displays show."""
 
 NUMBER = re.compile(
     r"[+-]?(\d+[.,]?\d*|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE
@@ -71,7 +81,7 @@ def is_number(cell: str) -> bool:
 def is_missing(cell: str) -> bool:
     """Whether it says that there is no value."""
     text = cleaned(cell).casefold()
-    return text in EMPTY or set(text) <= {"#", "*"} or NO_NUMBER.fullmatch(text) is not None
+    return text in EMPTY or NO_NUMBER.fullmatch(text) is not None
 
 
 def decimal_of(cells: Sequence[str]) -> str:

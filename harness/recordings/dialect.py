@@ -26,6 +26,8 @@ EXCEL = re.compile(r"sep=(?P<separator>.)\s*\n")
 COMMENT, LINE = re.compile(r"\s*(#+|%+|//+)\s*"), re.compile(r"[-=_+:|*\s]*")
 """With which a line of names may begin, and a line that only parts others."""
 
+TIMES = frozenset(("s", "ms"))
+
 Row = tuple[int, list[str]]
 """Number of its last line in the file, and its cells."""
 
@@ -68,7 +70,8 @@ def dialect_of(text: str, path: Path) -> Dialect:
     if not rows:
         raise RecordingError(f"{path} is empty")
     above, below = _parted(rows)
-    above = [(line, [unquoted(cell.strip()) for cell in _uncommented(cells)]) for line, cells in above]
+    width = max((len(cells) for _, cells in below), default=0)
+    above = [(line, [unquoted(cell.strip()) for cell in _uncommented(cells, width)]) for line, cells in above]
     if not above:
         raise RecordingError(f"{path}, line {rows[0][0]}: there is no line of names above the numbers")
     of_units = (k for k in range(len(above) - 1, 0, -1) if _are_units(above[k][1], above[k - 1][1]))
@@ -94,10 +97,14 @@ def _is_decimal_too(names: Sequence[str], rows: Sequence[Sequence[str]]) -> bool
     return 2 * sum(wider) > len(rows) and not any("." in cell or "," in cell for cells in rows for cell in cells)
 
 
-def _uncommented(cells: Sequence[str]) -> Sequence[str]:
-    """Without a mark of a comment before them."""
+def _uncommented(cells: Sequence[str], width: int) -> Sequence[str]:
+    """Without a mark of a comment before them; one over a column of its own, as that of a number of the row, stays.
+
+    Args:
+        width: cells in the rows of numbers.
+    """
     first = [COMMENT.sub("", cell, count=1) if not k else cell for k, cell in enumerate(cells)]
-    return first[1:] if first and not first[0] and cells[0] else first
+    return first[1:] if len(first) > width and not first[0] and cells[0] else first
 
 
 def _rows(text: str, separator: str, path: Path) -> list[Row]:
@@ -145,7 +152,9 @@ def _filled(cells: Sequence[str]) -> int:
 
 
 def _are_units(cells: Sequence[str], names: Sequence[str]) -> bool:
-    """Whether a row below names holds units, for each name one or nothing."""
-    units = [cell.strip(" []()") for cell in cells]
-    named = [bool(name.strip()) for name in names]
-    return any(units) and all(not unit or (k < len(named) and named[k] and known(unit)) for k, unit in enumerate(units))
+    """Whether a row below names holds units, for each name one or nothing. Beside that of a time a third of the
+    others may be none, as `enum`."""
+    units = {k: unit for k, cell in enumerate(cells) if (unit := cell.strip(" []()"))}
+    named = all(k < len(names) and names[k].strip() for k in units)
+    none = [unit for unit in units.values() if not known(unit)]
+    return bool(units and named) and 3 * len(none) <= len(units) * (not TIMES.isdisjoint(units.values()))

@@ -25,7 +25,7 @@ OPENING = re.compile(r"\s*/\s*$|\s+in\s*$")
 BEHIND = (
     re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>.+)"),
     re.compile(r"(?P<name>.+)\s+in\s+(?P<unit>\S.*)"),
-    re.compile(r"(?P<name>.+?)(?:\s+-|:)\s+(?P<unit>\S.*)"),
+    re.compile(r"(?P<name>.+?)(?:\s+-|:|,)\s+(?P<unit>\S.*)"),
 )
 """A quantity over its unit (ISO 80000-1), in words, and behind a mark."""
 

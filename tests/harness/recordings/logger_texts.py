@@ -104,6 +104,7 @@ MISSING_WORDS = (
     "", " ", "-", "--", "---", "NaN", "nan", "NAN", "-nan", "N/A", "n/a", "#N/A", "#NV", "#DIV/0!", "#VALUE!", "#WERT!",
     "null", "NULL", "(null)", "None", "nil", "1.#QNAN", "-1.#IND", "1.#QNAN00", "?", "???", "*", "****", "####", ".",
     "overflow", "#OVR", "timeout", "<missing>", "..", "k. A.", "Not a Number",
+    "NAN(0x7f)", "---.--", "--,--", "#CALC!", "#NAME?", "offline", "Bad Input", "I/O Timeout",
     "void", "invalid", "missing", "NA", "<NA>", "NaT", "\\N", "no data", "not available", "\N{EN DASH}", "nan(ind)",
     "-nan(ind)", "ungültig", "SNA", "err",
 )  # fmt: skip
@@ -225,6 +226,19 @@ HABITS: dict[str, Habit] = {
     "types below the units": text(names="Time,Velocity,Motor Torque\ns,km/h,Nm\ndouble,double,float32"),
     "devices below the units": text(names="Time,Velocity,Motor Torque\ns,km/h,Nm\n,ETKC:1,ETKC:1"),
     "units of which some are empty": text(lambda k: plain(k) + ",D", "Time,Velocity,Motor Torque,Gear\ns,km/h,Nm,"),
+    "units of which one is none": text(lambda k: plain(k) + ",D", "Time,Velocity,Motor Torque,Gear\ns,km/h,Nm,enum"),
+    "a group above names that are units too": text(names="A,A,B\nt [s],v [km/h],T [Nm]"),
+    "# over the number of the row": text(lambda k: f"{k},{plain(k)}", "#," + ",".join(NAMES)),
+    "% and a blank before the names": text(lambda k: " ".join(cells(k)), "% t[s] v[km/h] T_mot[Nm]"),
+    "units behind a comma": text(german, "Time, s;Velocity, km/h;Motor Torque, Nm"),
+    "an index without a name": text(lambda k: f"{k},{plain(k)}", "," + ",".join(NAMES)),
+    "milliseconds before a trigger": text(
+        lambda k: f"{1e3 * TIME[k] - 2e3:.0f},{V[k]:.2f},{T[k]:.1f}", "Time [ms],Velocity [km/h],Motor Torque [Nm]"
+    ),
+    "columns of nothing": text(lambda k: plain(k) + ",,", ",".join(NAMES) + ",,"),
+    "names over three lines": text(names="Car,Car,Motor\nTime,Velocity,Motor Torque\n[s],[km/h],[Nm]"),
+    "percent of a torque": text(names="Time [s],Velocity [km/h],Motor Torque [%]", refused=r"in %, which does not"),
+    "comments of an INI": text(above="; logger 7\n; rate 10 Hz\n"),
     "comments above": text(above="# logger 7\n# rate 10\n"),
     "numpy.savetxt": text(lambda k: " ".join(cells(k)), "# t[s] v[km/h] T_mot[Nm]"),
     "blanks, many": text(lambda k: "   ".join(cells(k)) + " ", "t[s]   v[km/h]  T_mot[Nm]"),
