@@ -22,6 +22,7 @@ class Manoeuvre:
         t_0: instant in s from which the metrics count; of a step, its first instant.
         dT: height of the demanded step in N.m, None if the manoeuvre is not a step.
         plateau_ends: instants in s at which the demand leaves a constant value, for the metric `plateau_swing`.
+        offered: what a bus tells the controller beside, by the names of its inputs.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Manoeuvre:
     dT: float | None = None
     plateau_ends: tuple[float, ...] = ()
     road: Mapping[str, float] = field(default_factory=dict[str, float])
+    offered: Mapping[str, Signal] = field(default_factory=dict[str, Signal])
 
     @property
     def T_0(self) -> float:

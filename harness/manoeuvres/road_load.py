@@ -1,7 +1,7 @@
 """A recorded drive on even samples, and what the balance of forces along the road knows of a vehicle."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING, Self
 
@@ -101,6 +101,7 @@ class Track:
         v: speed in m/s.
         T_driver: motor torque in N.m within the limits of the motor: the driver's demand.
         slope: of the road in rad, 0 where no elevation was recorded.
+        offered: what a bus tells the controller, by name, as it was received last.
     """
 
     name: str
@@ -109,6 +110,7 @@ class Track:
     v: np.ndarray
     T_driver: np.ndarray
     slope: np.ndarray
+    offered: Mapping[str, np.ndarray] = field(default_factory=dict[str, np.ndarray])
 
     @classmethod
     def of(cls, recording: "Drive", T_max: float = inf) -> Self:
@@ -123,7 +125,9 @@ class Track:
         slope = np.zeros_like(v)
         if recording.elevation is not None:
             slope = road_slope(v, np.interp(t, time, recording.elevation), interval)
-        return cls(recording.name, interval, t, v, np.clip(T_mot, -T_max, T_max), slope)
+        last = np.searchsorted(time, t + 1e-6 * interval, side="right") - 1
+        offered = {name: values[last] for name, values in recording.offered.items()}
+        return cls(recording.name, interval, t, v, np.clip(T_mot, -T_max, T_max), slope, offered)
 
 
 def road_slope(v: np.ndarray, elevation: np.ndarray, interval: float) -> np.ndarray:

@@ -61,6 +61,18 @@ class Held:
 
 
 @dataclass(frozen=True)
+class Count:
+    """The whole part of lines: a counter that goes on between the instants at which it was seen."""
+
+    lines: Lines
+
+    def __call__(self, t: ArrayLike) -> np.ndarray:
+        import numpy as np
+
+        return np.floor(self.lines(t) + 1e-6)
+
+
+@dataclass(frozen=True)
 class FlatSine:
     """A sine of the frequency (Hz) about a mean, its flanks `steepness` times as steep, cut off at the amplitude."""
 

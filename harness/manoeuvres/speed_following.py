@@ -19,7 +19,7 @@ from ..base.errors import WiringError
 from ..loop.places import STEP_SIZE
 from .manoeuvre import Manoeuvre
 from .road_load import RoadLoad, Track
-from .signals import Held, Lines
+from .signals import Count, Held, Lines
 
 SMOOTHING = 0.5
 """Standard deviation in s of the Gaussian: half of the power is left at 0.27 Hz."""
@@ -102,4 +102,8 @@ def drive(track: Track, load: RoadLoad, F: np.ndarray, held: float | None = None
         T_driver=demand if held is None else Held(held, demand(np.arange(0.0, duration + held, held))),
         T_brake=Lines(track.t, load.r * np.where(holding(track, load, F), F_BRAKE_MAX, F_brake)),
         slope=Lines(track.t, np.arcsin(sine)),
+        offered={
+            name: Count(Lines(track.t, values)) if name == "alive" else Held(track.interval, values)
+            for name, values in track.offered.items()
+        },
     )

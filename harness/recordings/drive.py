@@ -14,6 +14,9 @@ from .file_units import FileUnit
 from .source import RecordingError
 from .time_base import WHOLE
 
+OFFERED = ("alive", "slip_control")
+"""What some buses tell a controller."""
+
 WHEELS = "omega_wheel"
 """Whose speed over ground is that of the vehicle where it was not recorded."""
 
@@ -29,6 +32,7 @@ class Drive:
         elevation: of the road in m; None if it was not recorded.
         T_mot: motor torque in N.m, motor side.
         file_units: of v and T_mot.
+        offered: of OFFERED what was recorded, as it was received last.
         channels: by quantity, as they were sampled; `omega_wheel` in the place of `v` where that is the wheels'.
     """
 
@@ -39,6 +43,7 @@ class Drive:
     T_mot: np.ndarray
     file_units: Mapping[str, FileUnit]
     channels: Mapping[str, Channel] = field(default_factory=dict)
+    offered: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def heading(self, quantity: str) -> str:
         """Of the column of a quantity."""
@@ -74,14 +79,16 @@ def read_drive(
     """
     recording = Channels(path, columns, names, databases, cut)
     speed = "v" if recording.has("v") or not recording.has(WHEELS) else WHEELS
-    elevation = [quantity for quantity in ("elevation",) if recording.has(quantity)]
-    channels = recording.read(speed, *elevation, "T_mot", optional=elevation)
+    optional = [quantity for quantity in ("elevation", *OFFERED) if recording.has(quantity)]
+    channels = recording.read(speed, *optional, "T_mot", optional=optional)
     if speed == WHEELS and channels[speed].unit != "m/s":
         raise RecordingError(
             f"{path}: no speed of the vehicle, and {channels[speed].heading} is none over ground, in km/h for example; "
             "--column v=HEADING says which one it is"
         )
     received = [WHEELS] if speed == WHEELS and is_slower(channels[speed], channels["T_mot"]) else []
-    time, values = aligned(channels, "T_mot", received)
+    time, values = aligned(channels, "T_mot", [*received, *OFFERED])
+    offered = {quantity: values[quantity] for quantity in OFFERED if quantity in values}
     file_units = {"v": channels[speed].file_unit, "T_mot": channels["T_mot"].file_unit}
-    return Drive(path.stem, time, values[speed], values.get("elevation"), values["T_mot"], file_units, channels)
+    elevation = values.get("elevation")
+    return Drive(path.stem, time, values[speed], elevation, values["T_mot"], file_units, channels, offered)

@@ -90,6 +90,8 @@ QUANTITIES: dict[str, Quantity] = {
     "omega_wheel_R": _wheel_speed("speed of the right driven wheel"),
     "valid": Quantity("whether the wheel speed on the bus is valid, 0 or 1", "1", "1", 1.0, gap=10.0),
     "counter": Quantity("one more with every message of the wheel speed", "1", "1", inf, gap=10.0),
+    "alive": Quantity("one more with every frame of motor control", "1", "1", inf, gap=10.0),
+    "slip_control": Quantity("whether a traction or brake control is active, 0 or 1", "1", "1", 1.0, gap=10.0),
     "T_load": Quantity(
         "load torque over i, negative when it brakes", "N.m", "Nm", 10_000.0, slowest=0.01, least_swing=2.0
     ),

@@ -16,7 +16,8 @@ from ..base.errors import SimulationError, WiringError
 from ..cosimulation.experiment import Experiment, Source, require_steps
 from ..cosimulation.results import Results
 from ..cosimulation.runs import run
-from ..cosimulation.system import Port
+from ..cosimulation.system import Port, System
+from ..cosimulation.wiring import fit
 from ..loop.built_fmus import require_there
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
 from ..loop.settings import Changes, Settings, own_frequency, running
@@ -62,7 +63,7 @@ def simulate(
     experiment = Experiment(
         duration=manoeuvre.duration,
         step_size=made.step_size,
-        inputs=signals(manoeuvre, made.control, made.step_size),
+        inputs={**signals(manoeuvre, made.control, made.step_size), **_offered(manoeuvre, system)},
         parameters=given,
         scheme=made.scheme,
         tolerance=made.tolerance,
@@ -122,6 +123,17 @@ def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) 
     given = {port.name: _value(port, manoeuvre, enable=control) for port in INPUTS}
     ahead = {name: _ahead(value, 0.5 * step_size) for name, value in given.items() if name.startswith("plant.")}
     return MappingProxyType(given | ahead)
+
+
+def _offered(manoeuvre: Manoeuvre, system: System) -> dict[str, Source]:
+    """What a bus tells beside, where the controller has an input for it and no block of the loop tells it."""
+    if not manoeuvre.offered:
+        return {}
+    fitted = fit(system)
+    taken = {connection.target for connection in fitted.system.connections}
+    has = fitted.interfaces["controller"].variables
+    given = {f"controller.{name}": signal for name, signal in manoeuvre.offered.items() if name in has}
+    return {target: signal for target, signal in given.items() if target not in taken}
 
 
 def _ahead(signal: Signal, time: float) -> Signal:

@@ -15,15 +15,17 @@ import driveline
 from driveline.harness.base.errors import MissingExtra, WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.cosimulation.system import Connection
 from driveline.harness.loop.places import STEP_SIZE, T_S
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track
-from driveline.harness.manoeuvres.signals import Lines
+from driveline.harness.manoeuvres.signals import NOTHING, Lines
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.recordings.drive import read_drive
+from driveline.harness.simulation.simulate import _offered, simulate
 from driveline.harness.studies.drives.replay import CLOSE, followed, replay, signals_of, speed_error, write
 from tests import ROOT
 from tests.slow import slow
@@ -72,6 +74,26 @@ def test_a_program_gets_the_same_rides(replayed, short_drive, settings):
         assert np.array_equal(ride.signals, expected.signals)
     metrics = driveline.frame({ride.controller: ride.metrics for ride in rides})
     assert metrics.gear_torque_rms.DampingController < metrics.gear_torque_rms["without damping"]
+
+
+def test_what_a_bus_tells_reaches_a_controller_that_has_an_input_for_it(short_drive, settings, load, tmp_path):
+    """Held from row to row, here of 0.1 s, and the counter goes on; not where a block of the loop tells it."""
+    header, *lines = short_drive.read_text(encoding="utf-8").splitlines()
+    told = [f"{line},{100 + 50 * k},{int(10 <= k < 20)}" for k, line in enumerate(lines)]
+    path = tmp_path / "told.csv"
+    path.write_text("\n".join((f"{header},alive,slip_control", *told)), encoding="utf-8")
+    track = Track.of(read_drive(path))
+    manoeuvre = replace(drive(track, load, needed_force(track, load)), duration=3.0)
+    results = simulate(manoeuvre, settings)
+    active, t = results["controller.slip_control"], results["time"]
+    assert (t[active.argmax()], np.count_nonzero(active) * STEP_SIZE) == pytest.approx((1.0, 1.0))
+    assert results["controller.alive"].tolist() == [100 + k // 2 for k in range(len(t))]
+    assert results["controller.status"].max() < 4
+    system, target = loop(settings), "controller.slip_control"
+    assert set(_offered(manoeuvre, system)) == {"controller.alive", target}
+    told_by_a_block = replace(system, connections=(*system.connections, Connection("can.valid", target)))
+    assert set(_offered(manoeuvre, told_by_a_block)) == {"controller.alive"}
+    assert _offered(replace(manoeuvre, offered={"other": NOTHING}), system) == {}
 
 
 @pytest.mark.parametrize(
