@@ -44,7 +44,9 @@ def run(args: Arguments) -> int:
             raise
         found = next(Path(folder).rglob(args.made.name), None)
         if found is None:
-            raise DrivelineError(f"{args.made}: its command made no {args.made.name} and ended with exit code {code}")
+            records = sorted(path.name for path in Path(folder).glob("*.json"))
+            made = f"but {' and '.join(records)}; was it renamed?" if records else f"and ended with exit code {code}"
+            raise DrivelineError(f"{args.made}: its command made no {args.made.name}, {made}")
         now = read_record(found)
         for difference in different_origin(before, now):
             print(f"made differently: {plain(difference)}")
@@ -86,11 +88,12 @@ def _run(before: Mapping[str, Any], folder: Path, name: str) -> int:
 
 
 def _elsewhere(given: Any, folder: Path, name: str) -> dict[str, Any]:
-    """Changes of the arguments of a command for which it writes into a folder, its record by that name, and prints
+    """Changes of the arguments of a command, whose record has that name, for which it writes into a folder and prints
     nothing."""
     defaults = {each.name: each.default for each in fields(given)}
     is_file = defaults["output"] is None  # beside which the record is
-    changes = {"output": folder / f"{name}.toml" if is_file else folder, "quiet": True}
+    file = given.output or getattr(given, "usual_output", Path(f"{name}.toml"))
+    changes = {"output": folder / file.name if is_file else folder, "quiet": True}
     if getattr(given, "search", None):
         changes["search"] = folder
     if getattr(given, "report", None):

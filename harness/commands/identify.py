@@ -63,6 +63,11 @@ class Arguments(Recorded, Figures, Replacing, Report, Printing):
     step: bool = option(False, "identify C and phi_B from one step of the torque")
     design: bool = option(False, "compute gains for this car, build the controller, compare on both plants")
 
+    @property
+    def usual_output(self) -> Path:
+        """Where the vehicle file goes without --output."""
+        return Path("results/identify") / f"{self.recording.stem}_car.toml"
+
 
 def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
@@ -71,7 +76,7 @@ def run(args: Arguments) -> int:
     from ..recordings.measurement import read_measurement
 
     vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
-    output = args.output or Path("results/identify") / f"{args.recording.stem}_car.toml"
+    output = args.output or args.usual_output
     require_possible(output)
     plant, _, _ = records(vehicle)
     recording = read_measurement(args.recording, plant.i, plant.r, **args.as_read)

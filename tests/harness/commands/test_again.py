@@ -74,6 +74,13 @@ def test_what_made_it_is_named_where_it_was_something_else(
     assert (code, same) == (0, f"the same, to the last bit: {NAME}.csv")
 
 
+def test_of_a_record_that_was_renamed_that_is_said(made: Path, tmp_path: Path, capsys: Capsys) -> None:
+    renamed = with_record(made, tmp_path, lambda _: None).rename(tmp_path / "copy" / "mine.json")
+    code, out, err = answer(capsys, "again", str(renamed))
+    assert (code, out) == (2, "")
+    assert f"its command made no mine.json, but {NAME}.json; was it renamed?" in err
+
+
 @pytest.mark.parametrize("in_record", [False, True])
 def test_a_number_that_is_another_one_is_named(made: Path, tmp_path: Path, capsys: Capsys, in_record: bool) -> None:
     record = with_record(made, tmp_path, lambda _: None)
