@@ -33,8 +33,6 @@ def unpacked(interface: Interface, folder: Path | None = None) -> Iterator[Unpac
     """
     path = interface.path
     with TemporaryDirectory(prefix="driveline-", dir=folder, ignore_cleanup_errors=True) as files:
-        if not files.isascii():
-            raise UnpackingError(f"{path.name} cannot be unpacked to {files}: FMUs need a plain ASCII folder")
         rest()  # unpacking may take longer than a call may
         unpack(path, files)
         _find_binary(interface, Path(files, "binaries"))

@@ -1,10 +1,7 @@
 """Loops that are loaded once, or kept from run to run: each run is that of a fresh one, whatever was run before."""
 
 from dataclasses import replace
-from pathlib import Path
 from shutil import copyfile
-from types import SimpleNamespace
-from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -15,12 +12,11 @@ from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.runs import MOST_KEPT, kept_loaded, run
 from driveline.harness.cosimulation.system import Connection, Scheme, System
-from driveline.harness.cosimulation.unpacked_fmu import UnpackingError
-from driveline.harness.cosimulation.unpacked_fmu import unpacked as unpacked_into
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
+from tests.foreign import SMALLEST_CONTROLLER, build_relay
 from tests.slow import slow
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=1.2)
@@ -211,10 +207,14 @@ def test_errors_are_told_in_every_run_and_unload_or_load_anew(relay, unpacked):
     assert runs._here.kept is None
 
 
-def test_an_fmu_is_not_unpacked_to_where_its_uri_would_need_an_encoding(tmp_path):
-    folder, car = tmp_path / "Fahrzeuge für Anfänger", cast(Any, SimpleNamespace(path=Path("car.fmu")))
+def test_ours_run_from_a_folder_that_is_not_ascii_and_of_others_that_cannot_the_folder_is_named(native, tmp_path):
+    """PythonFMU's binary does not decode the URI of its resources, and crashes."""
+    folder = tmp_path / "Fahrzeuge für Anfänger"
     folder.mkdir()
-    message = r"^car\.fmu cannot be unpacked to .*: FMUs need a plain ASCII folder$"
-    with pytest.raises(UnpackingError, match=message), unpacked_into(car, folder):
+    with loaded(System({"motor": native / "MotorTorqueLoop.fmu"}, own=frozenset({"motor"})), folder=folder) as ours:
+        assert len(ours.run(Experiment(0.01))) == 11
+    theirs = System({"a": build_relay(tmp_path, SMALLEST_CONTROLLER)})
+    message = r"it was unpacked to .*, whose name is not plain ASCII"
+    with pytest.raises(SimulationError, match=message), loaded(theirs, folder=folder):
         pass
     assert list(folder.iterdir()) == []
