@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from driveline.fmus.building.parameter_files import read_parameters
+from driveline.harness.design.character import factors
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
 from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
@@ -27,6 +28,7 @@ from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.robustness import summary
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.robustness_campaign import campaign
+from driveline.models.controller.gains import GAINS
 
 from .study import Cell, Column, Measured, Study, Table
 from .terminal import show
@@ -195,10 +197,36 @@ def reached_table(values: Reached) -> Table:
     return Table("goal", COLUMNS, rows, f"{len(missed(values))} of {len(values)} are not reached.")
 
 
+CHARACTERS = {"sport": 0.0, "as designed": 0.5, "comfort": 1.0}
+"""Choices of `driveline design --character`."""
+
+
+def of_character(character: float) -> dict[str, float]:
+    """The stored gains that are others with a character, by name."""
+    return {name: factor * GAINS[name] for name, factor in factors(character).items() if factor != 1.0}
+
+
+def trade_table(of_characters: Mapping[str, Reached]) -> Table:
+    """What each character reaches of the goals that are missed as designed, and how many goals each misses."""
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for key in missed(of_characters["as designed"]):
+        found = (values[key] for values in of_characters.values())
+        rows[f"{title(key[0])}, {key[1]}"] = (*found, float(most(*key)))
+    rows["goals missed"] = (*(len(missed(values)) for values in of_characters.values()), 0)
+    return Table("goal", tuple(map(Column, (*of_characters, "at most"))), rows)
+
+
 def measure() -> Measured:
-    values = all_reached(all_measured({}))
+    all_of = {name: all_reached(all_measured(of_character(value))) for name, value in CHARACTERS.items()}
+    values = all_of["as designed"]
     count = {"goals": (len(values),), "missed": (len(missed(values)),)}
-    return Measured({"reached": reached_table(values), "count": Table("", (Column("count", decimals=0),), count)})
+    return Measured(
+        {
+            "reached": reached_table(values),
+            "trade": trade_table(all_of),
+            "count": Table("", (Column("count", decimals=0),), count),
+        }
+    )
 
 
 SENTINELS = tuple(goal for goal in GOALS if goal.manoeuvre == "tipin15" and goal.deviation == NOMINAL)
@@ -229,5 +257,5 @@ STUDY = Study(
     {"reached": [title(goal) for goal in SENTINELS]},
     HELD_OUT_SEEDS,
     explore,
-    seconds=30,
+    seconds=60,
 )
