@@ -87,8 +87,7 @@ def _driven(by: Step, name: str) -> tuple[float, float]:
 
 def of_car(identified: Identified) -> tuple[float, float]:
     """C of the vehicle file in N.m/rad, and half of its 95 % interval: of the plant that was driven, else by the
-    covariance of the likelihood, since a filter that trusts the model less splits the car otherwise, and the file needs
-    its frequency."""
+    covariance."""
     if identified.driven:
         return _driven(identified.driven, "C")
     p, answer = identified.p, identified.found
@@ -97,11 +96,10 @@ def of_car(identified: Identified) -> tuple[float, float]:
         return equivalent(identified, p).C
 
     # a step inside the bounds: d may be 0
-    deviations = dict(zip(answer.free, np.sqrt(np.diag(answer.of_likelihood)), strict=True))
-    steps = {name: 0.1 * float(by) for name, by in deviations.items() if name in OF_CAR}
+    steps = {name: 0.1 * by for name, by in answer.deviations.items() if name in OF_CAR}
     changes = np.array([(C(p._replace(**{name: getattr(p, name) + by})) - C(p)) / by for name, by in steps.items()])
     at = [answer.free.index(name) for name in steps]
-    return C(p), Z_95 * float(np.sqrt(changes @ answer.of_likelihood[np.ix_(at, at)] @ changes))
+    return C(p), Z_95 * float(np.sqrt(changes @ answer.covariance[np.ix_(at, at)] @ changes))
 
 
 def of_car_line(identified: Identified) -> str:
@@ -158,15 +156,7 @@ def identified_car(identified: Identified, vehicle: Mapping[str, Any] | None = N
             f"file needs +- {100.0 * WIDEST_INTERVAL:g} % or less: excite more or longer, and give every channel as it "
             "was sampled"
         )
-    # as the likelihood has it: what a second estimate adds is said, and keeps nothing out of the file
-    halves = dict(zip(identified.found.free, Z_95 * np.sqrt(np.diag(identified.found.of_likelihood)), strict=True))
-    if identified.driven:
-        halves["phi_B"] = rows["phi_B"].half
-    known = {
-        name: row.value
-        for name, row in rows.items()
-        if row.told_by and halves.get(name, row.half) <= WIDEST_INTERVAL * row.value
-    }
+    known = {name: row.value for name, row in rows.items() if row.told_by and row.half <= WIDEST_INTERVAL * row.value}
     names = ("J_2", "phi_B", "J_1", "tau") if identified.explained else ("phi_B", "J_1", "tau")
     entries = {"C": C, **{name: known[name] for name in names if name in known}}
     return updated(vehicle or {}, {name: float(f"{value:.6g}") for name, value in entries.items()})

@@ -1,6 +1,6 @@
 """Diagnostics: what may be wrong with a recording, or with what is taken as known, in words of the car."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.signal import welch
@@ -138,7 +138,7 @@ def diagnose_model(found: Found, T_load: float) -> Iterator[str]:
         yield (
             f"two masses and a tyre do not explain all of this car: {' and '.join(lacks)} "
             f"{'have' if len(lacks) > 1 else 'has'} more in every sample than the noise of the sensors; the intervals "
-            "are wider for that, and J_2 is the one that predicts best"
+            "are wider for that, and J_2 is the one that predicts best, not that of the wheels"
         )
     if T_load < OF_TYRE:
         yield (
@@ -217,17 +217,6 @@ def diagnose_excitation(found: Found) -> Iterator[str]:
     ]
     if wide:
         yield f"{', '.join(wide)}: 95 % interval wider than +- {100.0 * CLOSE:g} %; excite more or longer"
-
-
-def diagnose_second(apart: Sequence[str], second: Parameters) -> Iterator[str]:
-    """Where the estimate of a filter that trusts the model less is another one.
-
-    Args:
-        apart: names of the parameters of which the intervals were widened.
-    """
-    if apart:
-        values = ", ".join(f"{name} = {getattr(second, name):.4g}" for name in apart)
-        yield f"a filter that trusts the model less finds {values}: the intervals are wider and cover both"
 
 
 def diagnose_torque_loop(loop: FittedLoop, T_s: float, tau: float) -> Iterator[str]:

@@ -2,7 +2,7 @@
 Marquardt), within physical bounds."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from .drive_train import Parameters
 from .prediction import CHANNELS, Noise, Predicted, Predictor
-from .priors import LEAST, OF_CAR, PRIORS, before, moved, scales, surprise
+from .priors import LEAST, PRIORS, before, moved, scales, surprise
 
 Z_95 = float(norm.ppf(0.975))
 """Standard deviations within which 95 % of what is normal are."""
@@ -56,7 +56,6 @@ class Found:
         T_s: between samples in s.
         passes: through the recording.
         off: standard deviations of parameters, in their units, beside those of the likelihood.
-        shift: to another estimate, shape (free,), if there is one.
     """
 
     p: Parameters
@@ -69,7 +68,6 @@ class Found:
     T_s: float
     passes: int
     off: Mapping[str, float] = field(default_factory=dict)
-    shift: np.ndarray | None = None
 
     @cached_property
     def scale(self) -> np.ndarray:
@@ -78,11 +76,6 @@ class Found:
 
     @cached_property
     def covariance(self) -> np.ndarray:
-        """Of the free parameters, in their units; of two estimates it is such that each interval covers both."""
-        return self.of_likelihood + (0.0 if self.shift is None else np.outer(self.shift, self.shift) / Z_95**2)
-
-    @cached_property
-    def of_likelihood(self) -> np.ndarray:
         """Of the free parameters, in their units: that of the likelihood and LINEARISED, each deviation as much larger
         as the scores of windows scatter more than noise alone (sandwich); and what else they are off by."""
         inverse = np.linalg.inv(self.information.sum(axis=0) + np.diag(before(self.free)))
@@ -101,18 +94,10 @@ class Found:
     def told_by(self, name: str) -> str:
         """The channel that alone tells most of a parameter; "" where the recording tells nothing of it."""
         k, prior = self.free.index(name), np.diag(before(self.free))
-        if np.sqrt(self.of_likelihood[k, k]) > UNTOLD * PRIORS[name].deviation * self._unit(name):
+        if np.sqrt(self.covariance[k, k]) > UNTOLD * PRIORS[name].deviation * self._unit(name):
             return ""
         alone = [np.linalg.inv(of + prior)[k, k] for of in self.information]
         return CHANNELS[int(np.argmin(alone))]
-
-    def confirmed(self, second: Parameters) -> tuple["Found", list[str]]:
-        """With intervals that cover another estimate too, of each parameter and of what follows from them, and the
-        names of those that are further apart than their intervals."""
-        shift = np.array([getattr(second, name) - getattr(self.p, name) for name in self.free])
-        shift *= [name in OF_CAR for name in self.free]
-        apart = zip(self.free, abs(shift) / Z_95, strict=True)
-        return replace(self, shift=shift), [name for name, by in apart if by > self.deviations[name]]
 
     def _unit(self, name: str) -> float:
         return getattr(self.p, name) if PRIORS[name].positive else 1.0

@@ -13,7 +13,6 @@ from .diagnostics import (
     diagnose_offsets,
     diagnose_outliers,
     diagnose_parameters,
-    diagnose_second,
     diagnose_spectrum,
     diagnose_torque_loop,
     is_coloured,
@@ -49,10 +48,6 @@ NARROW = {"lack_1": 0.02, "lack_phi": 1e-4, "lack_L": 0.2}
 ROUNDS, BETTER = 4, 1.0
 """Searches at most, each from the end of the one before, and gain in likelihood for another one: a deviation is .5.
 Where all lacks have come to half of NARROW there is no valley to leave."""
-
-LESS_TRUST = 3.0
-"""Times what the model lacks in a second estimate, where the model does not explain the car: phi_B of the small car in
-examples/cars is 10 % off there, and the two are 7 % apart."""
 
 UNCONFIRMED = {True: 0.1, False: 0.3}
 """Share by which phi_B may be off of a car that is more than two masses, with and without load torque: 9.5 and 28 %
@@ -172,8 +167,6 @@ def identify(
     measured = drive.T_load is not None
     log("judging it by data that were not used")
     quality = judged(predictor, found)
-    second = second_estimate(predictor, found) if lacking(found) else found.p
-    both, apart = found.confirmed(second)
     at = drive.longest
     valid, omega_2 = recording.valid, found.predicted.states[at.start : at.stop - 1, 1]
     wheel_speed = late_wheel_speed(recording.omega_2[at], None if valid is None else valid[at], omega_2, drive.T_s)
@@ -186,11 +179,10 @@ def identify(
         *diagnose_parameters(found),
         *(diagnose_model(found, quality.T_load) if measured else ()),
         *diagnose_excitation(found),
-        *diagnose_second([name for name in apart if name != "phi_B"], second),  # see driven_plants
     )
     name = WITH_LOAD if measured else WITHOUT_LOAD
     answers = loop if loop and loop.answers else None
-    return Identified(name, both, predictor, answers, wheel_speed, quality, warnings)
+    return Identified(name, found, predictor, answers, wheel_speed, quality, warnings)
 
 
 def of_sensors(drive: Drive, T_mot: np.ndarray) -> Noise:
@@ -227,13 +219,6 @@ def fit(predictor: Predictor, start: Parameters, more: Sequence[str] = (), log: 
             break
     log(f"predicted best with {_shown(best.p)}")
     return best
-
-
-def second_estimate(predictor: Predictor, found: Found) -> Parameters:
-    """What a filter finds that trusts the model LESS_TRUST times less."""
-    lacks = {name: LESS_TRUST * getattr(found.p, name) for name in NARROW}
-    free = [name for name in found.free if name not in lacks]
-    return search(predictor, found.p._replace(**lacks), free, found.centre, most=8).p
 
 
 def judged(predictor: Predictor, found: Found) -> Quality:

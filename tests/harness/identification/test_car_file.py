@@ -35,7 +35,7 @@ def known_to(name: str, half: float, of: Identified = FOUND) -> Identified:
     covariance, k = of.found.covariance.copy(), of.found.free.index(name)
     covariance[k, :] = covariance[:, k] = 0.0
     covariance[k, k] = (half / Z_95) ** 2
-    vars(one)["of_likelihood"] = covariance
+    vars(one)["covariance"] = covariance
     return replace(of, found=one)
 
 

@@ -28,7 +28,6 @@ from driveline.harness.identification.diagnostics import (
     diagnose_offsets,
     diagnose_outliers,
     diagnose_parameters,
-    diagnose_second,
     diagnose_spectrum,
     diagnose_torque_loop,
 )
@@ -233,12 +232,6 @@ def test_noise_counts_as_white_down_to_its_threshold() -> None:
     for share, named in ((0.8 * COLOURED, True), (1.2 * COLOURED, False)):
         shaped = spectrum * np.where(np.arange(len(spectrum)) > 0.7 * len(spectrum), np.sqrt(share), 1.0)
         assert bool(text(diagnose_spectrum(np.fft.irfft(shaped), T_S))) == named
-
-
-def test_a_second_estimate_that_is_another_one_is_named() -> None:
-    assert text(diagnose_second([], P)) == ""
-    message = text(diagnose_second(["J_2", "C"], P._replace(J_2=0.31234, C=118.0)))
-    assert message.startswith("a filter that trusts the model less finds J_2 = 0.3123, C = 118: the intervals")
 
 
 def loop(tau: float = 0.003, delay: float = 0.0, explained: float = 1.0) -> FittedLoop:

@@ -12,7 +12,6 @@ from driveline.harness.identification.estimator import (
     LINEARISED,
     UNTOLD,
     WINDOW,
-    Z_95,
     Found,
     search,
 )
@@ -103,17 +102,6 @@ def test_what_else_a_parameter_is_off_by_adds_to_its_deviation() -> None:
     information, scores = np.array([np.diag([1e4, 0.0]), np.diag([0.0, 1e4])]), np.zeros((500, 2))
     alone, more = (replace(of(information, scores), off=off).deviations for off in ({}, {"C": 2.0}))
     assert more == pytest.approx({"J_2": alone["J_2"], "C": np.hypot(alone["C"], 2.0)})
-
-
-@pytest.mark.parametrize(("away", "widened"), [(0.999, False), (1.001, True), (-3.0, True)])
-def test_an_interval_covers_a_second_estimate(away: float, widened: bool) -> None:
-    one = of(np.array([np.diag([1e4, 0.0]), np.diag([0.0, 1e4])]), np.zeros((500, 2)))
-    half = Z_95 * one.deviations["C"]
-    both, apart = one.confirmed(P._replace(C=P.C + away * half))
-    assert apart == (["C"] if widened else [])
-    assert Z_95 * both.deviations["C"] == pytest.approx(half * np.hypot(away, 1.0))
-    assert both.deviations["J_2"] == one.deviations["J_2"]
-    assert both.told_by("C") == one.told_by("C") == "load torque"
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.99, "load torque"), (1.01, "")])
