@@ -201,7 +201,7 @@ def gear_torque(each: Run, settings: Settings, injectors: Mapping[bool, Path]) -
     parameters = start(each.manoeuvre, each.seed) | dict(settings.parameters)
     parameters |= {f"plant.{name}": value for name, value in each.plant.items()}
     parameters |= {f"faults.{name}": value for name, value in each.errors.items()}
-    inputs = signals(each.manoeuvre, settings.control, settings.step_size) | dict(each.told)
+    inputs = {**signals(each.manoeuvre, settings.control, settings.step_size), **each.told}
     rows = at_samples(run(system, Experiment(each.manoeuvre.duration, inputs=inputs, parameters=parameters)))
     fallback = T_S * float(np.count_nonzero(rows["controller.status"] == FALLBACK))
     return rows["plant.T_gear"][rows["time"] >= each.seen_from], fallback
