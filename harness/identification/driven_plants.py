@@ -49,8 +49,8 @@ def driven_plants(identified: Identified, vehicle: Mapping[str, Any], settings: 
     fits = []
     with kept_loaded():
         for plant in PLANTS:
-            _, near = fitted(plant, _driven(identified, FIRST), noise, car, settings, starts, most=20)
-            fits.append(fitted(plant, _driven(identified, LONGEST), noise, car, settings, [near])[0])
+            _, near = fitted(plant, _driven(identified, FIRST), noise, car, settings, starts, most=20, origin=1.0)
+            fits.append(fitted(plant, _driven(identified, LONGEST), noise, car, settings, [near], origin=1.0)[0])
     best = min(fits, key=lambda found: found.error)
     held_out = identified.drive.omega_1[round((1.0 - HELD_OUT) * len(identified.drive)) :]
     if (

@@ -192,6 +192,7 @@ def fitted(
     settings: Settings,
     starts: Sequence[Mapping[str, float]],
     most: int = 12,
+    origin: float = 0.0,
 ) -> tuple[Step, dict[str, float]]:
     """The car whose motor speed is the recorded one, and by what it is moved from what is known.
 
@@ -200,6 +201,8 @@ def fitted(
         vehicle: entries of the vehicle file as the car is known.
         starts: by what it may be moved; the search begins with the best of them.
         most: Jacobians of each of two searches.
+        origin: of what is searched: least_squares differentiates by shares of it, and from 0 in steps that are lost in
+            the rounding of what follows from C.
     """
     system, known = _plant(settings.replace(plant=plant)), with_estimates(vehicle)
     names = [name for name in SEARCHED if name != "damping" or plant != PLANTS[0]]
@@ -208,8 +211,8 @@ def fitted(
     size = noise
 
     def error(x: np.ndarray) -> np.ndarray:
-        """Over the noise, then what is known before; of x - 1, as least_squares differentiates by shares of x."""
-        x = x - 1.0
+        """Over the noise, then what is known before."""
+        x = x - origin
         try:
             omega_1 = _driven(system, plant, step, known, dict(zip(names, x.tolist(), strict=True)))
         except ParameterFileError:
@@ -217,7 +220,7 @@ def fitted(
         return np.concatenate([(omega_1 - step.omega_1) / size, x / spread])
 
     begin = min(
-        (np.array([1.0 + start.get(name, 0.0) for name in names]) for start in starts),
+        (np.array([origin + start.get(name, 0.0) for name in names]) for start in starts),
         key=lambda x: float(error(x) @ error(x)),
     )
     for _ in range(2):
@@ -231,7 +234,7 @@ def fitted(
     scores = np.array([part.sum(axis=0) for part in np.array_split(J * r[:, None], windows)])
     sandwich = H @ (scores.T @ scores) @ H
     deviations = np.sqrt(np.maximum(np.diag(H), np.diag(sandwich)))
-    moved = dict(zip(names, (found.x - 1.0).tolist(), strict=True))
+    moved = dict(zip(names, (found.x - origin).tolist(), strict=True))
     halves = {name: Z_95 * float(of) for name, of in zip(names, deviations, strict=True) if name in ("C", "phi_B")}
     values = {name: known[name] * float(np.exp(moved[name])) for name in halves}
     return Step(plant, values, halves, rms, noise), moved
