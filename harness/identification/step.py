@@ -20,6 +20,7 @@ from scipy.optimize import least_squares
 from ...fmus.building.one_car import DAMPERS, DEFAULT_CAR, FOLLOW, of_one_car, with_estimates
 from ...fmus.catalogue import EVERY
 from ...fmus.errors import ParameterFileError
+from ..base.errors import SimulationError
 from ..cosimulation.experiment import Experiment
 from ..cosimulation.runs import kept_loaded, run
 from ..cosimulation.system import Port, System
@@ -215,7 +216,7 @@ def fitted(
         x = x - origin
         try:
             omega_1 = _driven(system, plant, step, known, dict(zip(names, x.tolist(), strict=True)))
-        except ParameterFileError:
+        except (ParameterFileError, SimulationError):
             return np.full(len(step.omega_1) + len(x), 1e3)
         return np.concatenate([(omega_1 - step.omega_1) / size, x / spread])
 
