@@ -23,7 +23,8 @@ landing_share T. What the landing has withheld comes back with the time constant
 at most, and a demand that is next to nothing has none.
 
 Where the wheels slip shape, landing_brake and the time for a landing fade, the damping to half: there the road takes
-less than is demanded, and the estimate lags.
+less than is demanded, and the estimate lags. Half swings are those of the full damping: a late motor speed looks like
+slip, and what it feeds must show.
 """
 
 from typing import Annotated, NamedTuple
@@ -143,7 +144,8 @@ def update(
     omega, change = motion.omega, expected.omega - motion.omega
     fed_back = p.k_d * (omega + p.T_pred / T_s * change)
     grip = 1.0 - motion.slip
-    damping = clip(minimum(1.0, 0.5 + grip) * (x.washout - fed_back), -p.T_add_max, p.T_add_max)
+    full = clip(x.washout - fed_back, -p.T_add_max, p.T_add_max)
+    damping = minimum(1.0, 0.5 + grip) * full
     shape = grip * (p.shape_1 * (T_driver - x.first) + p.shape_2 * (x.first - x.second))
     T_next = T_driver + p.demand_lead * (T_driver - x.slow)
 
@@ -164,7 +166,7 @@ def update(
         afloat=afloat,
         withheld=left * withheld,
     )
-    return x, Addition(damping=damping, landing=shape - withheld)
+    return x, Addition(damping=full, landing=damping - full + shape - withheld)
 
 
 def in_gap(motion: Motion) -> bool:

@@ -29,8 +29,10 @@ class Motion(NamedTuple):
 class Addition(NamedTuple):
     """What a law adds to the driver's demand."""
 
-    damping: Annotated[float, Real("N.m", "torque against the oscillation")]
-    landing: Annotated[float, Real("N.m", "change of the demand that lets the teeth land softly")]
+    damping: Annotated[float, Real("N.m", "torque against the oscillation, whose half swings are counted")]
+    landing: Annotated[
+        float, Real("N.m", "the rest: shape of the demand, soft landing, less damping where wheels slip")
+    ]
 
 
 class Part(Protocol):

@@ -75,7 +75,11 @@ def test_the_speed_difference_is_opposed(motion: Motion) -> None:
 
 @pytest.mark.parametrize(("slip", "share"), [(0.25, 1.0), (0.5, 1.0), (0.75, 0.75), (1.0, 0.5)])
 def test_half_of_the_damping_is_left_where_it_is_clear_that_the_wheels_slip(slip: float, share: float) -> None:
-    assert added(STILL._replace(omega_1=103.0, slip=slip), start(STILL, 2.0, P), 2.0) == -share * 2.0 * 3.0
+    motion = STILL._replace(omega_1=103.0, slip=slip)
+    assert added(motion, start(STILL, 2.0, P), 2.0) == -share * 2.0 * 3.0
+    assert (
+        update(start(STILL, 2.0, P), motion, motion, 2.0, T_S, P)[1].damping == -2.0 * 3.0
+    )  # of which half swings are
 
 
 @pytest.mark.parametrize(("slip", "share"), [(0.0, 1.0), (0.5, 0.5), (1.0, 0.0)])
