@@ -50,7 +50,7 @@ def take_wheel_speed(x: SpeedState, omega_2: float, T_s: float, p: Parameters) -
     return x._replace(omega_2=omega_2)
 
 
-def learn(x: SpeedState, innovation: float, doubted: bool, T_s: float, p: Parameters) -> SpeedState:
+def learn(x: SpeedState, innovation: float, hold: bool, T_s: float, p: Parameters) -> SpeedState:
     return x
 
 

@@ -60,12 +60,12 @@ class Estimator(Part, Protocol[S, P]):
         """State corrected by a message that has just arrived."""
         ...
 
-    def learn(self, x: S, innovation: float, doubted: bool, T_s: float, p: P) -> S:
+    def learn(self, x: S, innovation: float, hold: bool, T_s: float, p: P) -> S:
         """State that has learned of the car what the signals of this sample tell.
 
         Args:
             innovation: measured less expected motor speed, rad/s.
-            doubted: whether they are.
+            hold: nothing is learned: the signals are not trusted, or the damping feeds an oscillation.
         """
         ...
 

@@ -79,7 +79,7 @@ def forget_crossing(x: GapState) -> GapState:
 
 
 def update(
-    x: GapState, innovation: float, phi: float, slip: float, doubted: bool, T_s: float, p: AllParameters
+    x: GapState, innovation: float, phi: float, slip: float, hold: bool, T_s: float, p: AllParameters
 ) -> tuple[GapState, float]:
     """The state after a sample, and by how much the flank on which the teeth are has moved, rad.
 
@@ -87,14 +87,14 @@ def update(
         innovation: measured less expected motor speed, rad/s.
         phi: estimated twist, rad.
         slip: how clearly the wheels slip, from 0 to 1; nothing is learned with 1.
-        doubted: nothing is learned.
+        hold: nothing is learned.
     """
     side, depth = where(phi > 0.0, 1.0, -1.0), abs(phi) - x.phi_B
     samples = -side * x.flank  # on the other flank, and one more
     counting = x._replace(innovations=x.innovations + innovation - T_s / p.t_cross * x.innovations)
 
     def crossed() -> tuple[GapState, float]:
-        tells = clip(p.C * depth / (p.gap_torque * p.T_max) - 1.0, 0.0, where(doubted, 0.0, 1.0 - slip))
+        tells = clip(p.C * depth / (p.gap_torque * p.T_max) - 1.0, 0.0, where(hold, 0.0, 1.0 - slip))
         new = counting.innovations - x.before
         most = MOST_AT_ONCE * x.phi_B
         change = clip(tells * p.L_phi_B * (side * new - p.gap_bias * added_speed(p, T_s)), -most, most)

@@ -123,8 +123,8 @@ class Supervised(Generic[E, L]):
         e = self.estimated(e, u, p)
         omega_1, T_mot = where(rests, 0.0, omega_1), where(rests, 0.0, T_mot)
         e = branch(begins, lambda: self.estimator.restart(e, omega_1, T_mot, p), lambda: e)
-        doubted = logical_or(logical_or(bad, oscillation.is_less(x.swings)), logical_not(trust.is_trusted(trusting)))
-        e = self.estimator.learn(e, motor.omega_1 - expected, doubted, T_S, p)
+        hold = logical_or(logical_or(bad, oscillation.is_less(x.swings)), logical_not(trust.is_trusted(trusting)))
+        e = self.estimator.learn(e, motor.omega_1 - expected, hold, T_S, p)
         return x._replace(
             estimator=e,
             law=branch(begins, lambda: self.law.start(self.estimator.motion(e, p), T_driver, p), lambda: x.law),

@@ -154,9 +154,9 @@ def take_wheel_speed(x: EstimatorState, omega_2: float, T_s: float, p: ModelPara
     return x._replace(estimate=corrected(x.estimate, x.share * (omega_2 - x.late), L))
 
 
-def learn(x: EstimatorState, innovation: float, doubted: bool, T_s: float, p: AllParameters) -> EstimatorState:
+def learn(x: EstimatorState, innovation: float, hold: bool, T_s: float, p: AllParameters) -> EstimatorState:
     e = x.estimate
-    gap, moved = learned_gap.update(x.gap, innovation, e.phi, x.slip, doubted, T_s, cast(learned_gap.AllParameters, p))
+    gap, moved = learned_gap.update(x.gap, innovation, e.phi, x.slip, hold, T_s, cast(learned_gap.AllParameters, p))
     return x._replace(estimate=e._replace(phi=e.phi + moved), gap=gap)
 
 

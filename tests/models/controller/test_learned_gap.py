@@ -22,14 +22,14 @@ def crossing(
     depth: float = DEEP,
     before: float = 0.0,
     slip: float = 0.0,
-    doubted: bool = False,
+    hold: bool = False,
     p: object = P,
 ) -> GapState:
     """From the other flank to that on this side, with the same innovation in each of the last four samples."""
     x = GapState(0.5, flank=-side, innovations=0.0, before=before)
     for k in range(6):
         phi = side * (x.phi_B + depth if k else 0.0)
-        x, _ = learned_gap.update(x, innovation if k > 1 else 0.0, phi, slip, doubted, T_S, p)  # type: ignore[arg-type]
+        x, _ = learned_gap.update(x, innovation if k > 1 else 0.0, phi, slip, hold, T_S, p)  # type: ignore[arg-type]
     return x
 
 
@@ -61,9 +61,9 @@ def test_the_firmer_the_teeth_meet_the_more_a_crossing_tells(depth: float, share
 
 
 @pytest.mark.parametrize(("slip", "share"), [(0.0, 1.0), (0.5, 0.5), (1.0, 0.0)])
-def test_nothing_is_learned_while_the_wheels_slip_or_signals_are_doubted(slip: float, share: float) -> None:
+def test_nothing_is_learned_while_the_wheels_slip_or_it_is_held(slip: float, share: float) -> None:
     assert crossing(slip=slip).phi_B == pytest.approx(0.5 + share * 0.125 * SUM)
-    assert crossing(slip=slip, doubted=True).phi_B == 0.5
+    assert crossing(slip=slip, hold=True).phi_B == 0.5
 
 
 def test_it_is_learned_when_the_other_flank_has_been_touched_for_t_cross() -> None:
