@@ -1,4 +1,4 @@
-"""What a channel shows by itself: numbers that are none, cut-off peaks, spikes, jumps."""
+"""What a channel shows by itself: numbers that are none, cut-off peaks, spikes, jumps, counters that run over."""
 
 from collections.abc import Iterable, Iterator
 
@@ -49,6 +49,16 @@ WHEEL, MOTOR = (
 CLIMB = Threshold(20.0, "m/s", "rate at which no road climbs", "40 % at 50 m/s")
 STEP = Threshold(10.0, "m", "resolution of an elevation", "GPS resolves some metres; 0.02 m in the recorded trips")
 
+FRAME = Threshold(
+    0.002,
+    "s",
+    "time from one frame of motor control to the next, from which it follows whether its counter may run over between "
+    "two rows more often than is seen",
+    "`T_frame` of the controller",
+)
+PERIODS = (2**4, 2**8, 2**16, 2**32, 2**64)
+"""Of counters that run over."""
+
 SENTINEL = Rule(
     "code",
     "a number that loggers write where there is no value: -999, 65535, 3276.7, ...; it is taken for none",
@@ -81,12 +91,18 @@ JUMP = Rule(
     f"{STEP:g} m and {CLIMB:g} m/s times the step of time",
     f"40 % at 50 m/s climb {CLIMB:g} m/s; GPS resolves some metres; the recorded trips have 0.02 m",
 )
-RULES = (SENTINEL, HOLE, CLIPPED, SPIKED, JUMP)
+RUN_OVER = Rule(
+    "counter",
+    "a counter of frames that goes back, or may have run over between two rows; it is left out",
+    f"half of its period (16, 256, 65536), at a frame every {1e3 * FRAME:g} ms",
+    "beyond it the difference of two values has more than one meaning",
+)
+RULES = (SENTINEL, HOLE, CLIPPED, SPIKED, JUMP, RUN_OVER)
 
 
 def of_channels(channels: Iterable[Channel]) -> list[Finding]:
     """What is odd in channels, each by itself and as sampled."""
-    rules = (lacking, cut_off, spikes, jumps)
+    rules = (lacking, cut_off, spikes, jumps, uncertain)
     return [finding for channel in channels for rule in rules for finding in rule(channel)]
 
 
@@ -192,3 +208,26 @@ def jumps(channel: Channel) -> Iterator[Finding]:
         k = int(at[0])
         odd = f"jumps by {rise[k]:+.4g} m within {steps[k]:.3g} s, as no road does{more(len(at), 'jump')}"
         yield at_samples(channel, JUMP, at + 1, odd)
+
+
+def uncertain(channel: Channel) -> Iterator[Finding]:
+    """Rows between which it is not known how far a counter of frames went."""
+    if channel.quantity != "alive":
+        return
+    _, at = unwrapped(channel)
+    if len(at):
+        k, to = int(at[0]), channel.values.max()
+        odd = (
+            f"is {channel.values[k]:g} after {channel.values[k - 1]:g} {np.diff(channel.time)[k - 1]:.3g} s before; a "
+            f"counter up to {to:g} may have run over more often, or begun anew, and is left out{more(len(at), 'row')}"
+        )
+        yield at_samples(channel, RUN_OVER, at, odd)
+
+
+def unwrapped(counter: Channel) -> tuple[np.ndarray, np.ndarray]:
+    """What a counter has that does not run over, and the indices of the samples where this is uncertain."""
+    largest = counter.values.max()
+    period = next((period for period in PERIODS if period > largest), PERIODS[-1])
+    values = np.unwrap(counter.values, period=period)
+    steps, frames = np.diff(values), np.diff(counter.time) / FRAME
+    return values, 1 + np.flatnonzero((steps < 0.0) | (frames >= 0.5 * period) & bool(steps.any()))

@@ -1,13 +1,14 @@
 """A recorded drive, to be driven again by the simulated vehicle."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from .alignment import aligned, is_slower
 from .bounded_reading import bounded
+from .channel_rules import unwrapped
 from .channels import Channel, Channels
 from .clock_times import Clock
 from .file_units import FileUnit
@@ -32,7 +33,8 @@ class Drive:
         elevation: of the road in m; None if it was not recorded.
         T_mot: motor torque in N.m, motor side.
         file_units: of v and T_mot.
-        offered: of OFFERED what was recorded, as it was received last.
+        offered: of OFFERED what was recorded, as it was received last; a counter that runs over is unwrapped, or left
+            out where it may have run over more often than is seen.
         channels: by quantity, as they were sampled; `omega_wheel` in the place of `v` where that is the wheels'.
     """
 
@@ -87,7 +89,11 @@ def read_drive(
             "--column v=HEADING says which one it is"
         )
     received = [WHEELS] if speed == WHEELS and is_slower(channels[speed], channels["T_mot"]) else []
-    time, values = aligned(channels, "T_mot", [*received, *OFFERED])
+    used = dict(channels)
+    if counter := used.pop("alive", None):
+        counted, uncertain = unwrapped(counter)
+        used |= {} if len(uncertain) else {"alive": replace(counter, values=counted)}
+    time, values = aligned(used, "T_mot", [*received, *OFFERED])
     offered = {quantity: values[quantity] for quantity in OFFERED if quantity in values}
     file_units = {"v": channels[speed].file_unit, "T_mot": channels["T_mot"].file_unit}
     elevation = values.get("elevation")

@@ -28,6 +28,7 @@ from driveline.harness.recordings.channel_rules import (
     lacking,
     of_channels,
     spikes,
+    uncertain,
 )
 from driveline.harness.recordings.channels import Channel, Lack
 from driveline.harness.recordings.drive import Drive, read_drive
@@ -97,6 +98,11 @@ SPOILED: dict[str, tuple[Spoil, str, str]] = {
         lambda table: table.assign(**{H: table[H] + 80.0 * (table.index >= 300)}),
         "jump",
         r"^line 302: Elevation \[m\] at 30 s jumps by \+80 m within 0\.1 s",
+    ),
+    "counter": (
+        lambda table: table.assign(alive=50 * table.index % 16),
+        "counter",
+        r"^line 3: alive at 0\.1 s is 2 after 0 0\.1 s before; a counter up to 14 may .* left out \(\d+ rows\)$",
     ),
     "km/h called m/s": (
         lambda table: table.rename(columns={V: "Velocity [m/s]"}),
@@ -280,6 +286,18 @@ def test_an_elevation_jumps_where_no_road_climbs_so(interval: float) -> None:
         h = np.where(np.arange(40) < 20, 500.0, 500.0 - factor * (STEP + CLIMB * interval))
         findings = list(jumps(channel("elevation", h, interval, "m")))
         assert [finding.time for finding in findings] == pytest.approx([20 * interval] * expected)
+
+
+@pytest.mark.parametrize(
+    ("steps", "interval", "expected"),
+    [(7, 0.0159, []), (7, 0.0161, [1]), (0, 0.1, []), (9, 0.01, [1])],
+    ids=["below half", "half of the period", "at rest", "goes back"],
+)
+def test_a_counter_may_run_over_unseen_from_half_of_its_period_on(
+    steps: int, interval: float, expected: list[int]
+) -> None:
+    findings = list(uncertain(channel("alive", (3 + steps * np.arange(32)) % 16, interval)))
+    assert [finding.time for finding in findings] == pytest.approx([k * interval for k in expected])
 
 
 def drive(interval: float = 0.1, mass: float = 1.0, T_peak: float = 100.0) -> Drive:

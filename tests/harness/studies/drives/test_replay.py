@@ -76,18 +76,24 @@ def test_a_program_gets_the_same_rides(replayed, short_drive, settings):
     assert metrics.gear_torque_rms.DampingController < metrics.gear_torque_rms["without damping"]
 
 
-def test_what_a_bus_tells_reaches_a_controller_that_has_an_input_for_it(short_drive, settings, load, tmp_path):
-    """Held from row to row, here of 0.1 s, and the counter goes on; not where a block of the loop tells it."""
-    header, *lines = short_drive.read_text(encoding="utf-8").splitlines()
-    told = [f"{line},{100 + 50 * k},{int(10 <= k < 20)}" for k, line in enumerate(lines)]
-    path = tmp_path / "told.csv"
-    path.write_text("\n".join((f"{header},alive,slip_control", *told)), encoding="utf-8")
+@pytest.mark.parametrize(("bits", "interval"), [(4, 0.01), (8, 0.1), (16, 0.1)])
+def test_what_a_bus_tells_reaches_a_controller_that_has_an_input_for_it(
+    bits, interval, short_drive, settings, load, tmp_path
+):
+    """Held from row to row, and the counter goes on, also where it runs over; not where a block of the loop tells
+    it."""
+    t, *signals = np.loadtxt(short_drive, delimiter=",", skiprows=1).T
+    rows, first = np.round(np.arange(0.0, t[-1], interval), 9), 2**bits - 6
+    counter = (first + np.round(rows / 0.002)) % 2**bits
+    told = [rows, *(np.interp(rows, t, x) for x in signals), counter, (rows >= 1.0) & (rows < 2.0)]
+    header, path = short_drive.read_text(encoding="utf-8").splitlines()[0], tmp_path / "told.csv"
+    np.savetxt(path, np.column_stack(told), delimiter=",", header=f"{header},alive,slip_control", comments="")
     track = Track.of(read_drive(path))
     manoeuvre = replace(drive(track, load, needed_force(track, load)), duration=3.0)
     results = simulate(manoeuvre, settings)
     active, t = results["controller.slip_control"], results["time"]
     assert (t[active.argmax()], np.count_nonzero(active) * STEP_SIZE) == pytest.approx((1.0, 1.0))
-    assert results["controller.alive"].tolist() == [100 + k // 2 for k in range(len(t))]
+    assert results["controller.alive"].tolist() == [first + k // 2 for k in range(len(t))]
     assert results["controller.status"].max() < 4
     system, target = loop(settings), "controller.slip_control"
     assert set(_offered(manoeuvre, system)) == {"controller.alive", target}
