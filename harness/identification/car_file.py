@@ -67,8 +67,8 @@ def found(identified: Identified) -> list[Row]:
     answer, p = identified.found, identified.p._asdict()
     halves = {name: Z_95 * deviation for name, deviation in answer.deviations.items()}
     told = {name: answer.told_by(name) for name in OF_CAR if name in halves}
-    if by := identified.driven:
-        p["phi_B"], halves["phi_B"], told["phi_B"] = *_driven(by, "phi_B"), "motor speed"
+    if by := identified.plant_fit:
+        p["phi_B"], halves["phi_B"], told["phi_B"] = *_value_and_half(by, "phi_B"), "motor speed"
     elif not identified.explained and "phi_B" in halves:
         halves["phi_B"] = max(halves["phi_B"], identified.unconfirmed * p["phi_B"])
     rows = [Row(name, float(p[name]), halves[name], channel) for name, channel in told.items()]
@@ -80,16 +80,15 @@ def found(identified: Identified) -> list[Row]:
     return rows
 
 
-def _driven(by: Step, name: str) -> tuple[float, float]:
-    """Value and half of the interval."""
-    return by.values[name], by.values[name] * by.halves[name]
+def _value_and_half(fit: Step, name: str) -> tuple[float, float]:
+    return fit.values[name], fit.values[name] * fit.halves[name]
 
 
 def of_car(identified: Identified) -> tuple[float, float]:
     """C of the vehicle file in N.m/rad, and half of its 95 % interval: of the plant that was driven, else by the
     covariance."""
-    if identified.driven:
-        return _driven(identified.driven, "C")
+    if identified.plant_fit:
+        return _value_and_half(identified.plant_fit, "C")
     p, answer = identified.p, identified.found
 
     def C(p: Parameters) -> float:
@@ -110,7 +109,7 @@ def of_car_line(identified: Identified) -> str:
         if identified.explained
         else "J_2 as it was, as the model does not explain all; with that C the design's car swings as this one does"
     )
-    why += f" ({identified.driven.plant} driven by the recorded torque)" if identified.driven else ""
+    why += f" ({identified.plant_fit.plant} driven by the recorded torque)" if identified.plant_fit else ""
     return f"in the vehicle file C = {C:.5g} +- {half:.2g} N.m/rad ({100.0 * half / C:.2g} %): {why}"
 
 
@@ -195,7 +194,7 @@ def document(identified: Identified) -> dict[str, Any]:
         "resonance_Hz": identified.resonance,
         "vehicle_file": identified_car(identified),
         "C_of_the_car": dict(zip(("value", "half"), of_car(identified), strict=True)),
-        "driven_plant": identified.driven and vars(identified.driven),
+        "driven_plant": identified.plant_fit and vars(identified.plant_fit),
         "equivalent": equivalent(identified, identified.p)._asdict(),
         # JSON has no NaN
         "fit": {name: value for name, value in vars(identified.quality).items() if not np.isnan(value)},

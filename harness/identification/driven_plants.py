@@ -19,7 +19,7 @@ from ..cosimulation.runs import kept_loaded
 from ..loop.places import PLANTS
 from ..loop.settings import Settings
 from .car_file import WIDEST_INTERVAL, of_car
-from .identify import HELD_OUT, Identified
+from .identify import HELD_OUT, WITH_LOAD, Identified
 from .step import STEP_SIZE, Step, Tip, fitted, unexplained
 
 LONGEST, FIRST = 10.0, 2.5
@@ -28,16 +28,15 @@ LONGEST, FIRST = 10.0, 2.5
 STIFFNESSES, GAPS = (0.9, 1.0, 1.1), (0.85, 1.0, 1.2, 1.45)
 """Factors on C of the vehicle file and phi_B as the filter finds them, from which the search begins."""
 
-
 LEAST = {"C": 0.02, "phi_B": 0.01}
 """Halves of the intervals at the least, in the logarithm: 1.3 and .9 % were both off by in nine recordings of four
 cars where the plant met the motor speed to its noise."""
 
 
 def driven_plants(identified: Identified, vehicle: Mapping[str, Any], settings: Settings) -> Step | None:
-    """What the plant tells whose motor speed is nearest to the recorded one; None: the filter's model is nearer, or the
-    gap is not crossed. What
-    it does not explain beyond the noise may be as wrong as both answers are apart.
+    """C and phi_B of the plant whose motor speed is nearest to the recorded one; None if the filter predicts better, or
+    the gap is not crossed. The interval includes the distance of both answers, weighted by the unexplained share of the
+    error.
 
     Args:
         vehicle: entries of the vehicle file as the car is known.
@@ -49,8 +48,8 @@ def driven_plants(identified: Identified, vehicle: Mapping[str, Any], settings: 
     fits = []
     with kept_loaded():
         for plant in PLANTS:
-            _, near = fitted(plant, _driven(identified, FIRST), noise, car, settings, starts, most=20, origin=1.0)
-            fits.append(fitted(plant, _driven(identified, LONGEST), noise, car, settings, [near], origin=1.0)[0])
+            _, near = fitted(plant, _beginning(identified, FIRST), noise, car, settings, starts, most=20, origin=1.0)
+            fits.append(fitted(plant, _beginning(identified, LONGEST), noise, car, settings, [near], origin=1.0)[0])
     best = min(fits, key=lambda found: found.error)
     held_out = identified.drive.omega_1[round((1.0 - HELD_OUT) * len(identified.drive)) :]
     if (
@@ -63,10 +62,14 @@ def driven_plants(identified: Identified, vehicle: Mapping[str, Any], settings: 
     return replace(best, halves=halves)
 
 
-def diagnose_driven(identified: Identified) -> Iterator[str]:
-    """Whose phi_B and C those of the vehicle file are, where two masses do not explain the car; and why."""
-    why = "the gap of two masses is not that of this car" if identified.predictor.measured else "without load torque"
-    doubt, by = f"may be up to {100.0 * identified.unconfirmed:g} % too small", identified.driven
+def diagnose_driven(identified: Identified, failed: Exception | None = None) -> Iterator[str]:
+    """Whose phi_B and C those of the vehicle file are, where two masses do not explain the car; and why.
+
+    Args:
+        failed: why no plant could be driven.
+    """
+    why = "the gap of two masses is not that of this car" if identified.name == WITH_LOAD else "without load torque"
+    doubt, by = f"may be up to {100.0 * identified.unconfirmed:g} % too small", identified.plant_fit
     if by:
         yield (
             f"{why}: phi_B = {identified.p.phi_B:.4g} rad of the filter {doubt}; {by.plant}, driven by the recorded "
@@ -74,14 +77,16 @@ def diagnose_driven(identified: Identified) -> Iterator[str]:
             "which is taken"
         )
     else:
-        yield (
-            f"{why}: phi_B {doubt}, and no plant that was driven by the recorded torque confirms it; its interval is "
-            "that wide"
+        unconfirmed = (
+            f"the plants that would confirm it could not be driven: {failed}"
+            if failed
+            else "no plant that was driven by the recorded torque confirms it"
         )
+        yield f"{why}: phi_B {doubt}, so wide is its interval, as {unconfirmed}"
 
 
-def _driven(identified: Identified, duration: float) -> Tip:
-    """The beginning of the longest piece of a recording."""
+def _beginning(identified: Identified, duration: float) -> Tip:
+    """Of the longest piece of a recording, with a duration in s."""
     drive = identified.drive
     at = slice(drive.longest.start, min(drive.longest.stop, drive.longest.start + round(duration / drive.T_s)))
     T_mot, omega_1 = drive.T_mot[at], drive.omega_1[at]

@@ -49,7 +49,7 @@ ROUNDS, BETTER = 4, 1.0
 """Searches at most, each from the end of the one before, and gain in likelihood for another one: a deviation is .5.
 Where all lacks have come to half of NARROW there is no valley to leave."""
 
-UNCONFIRMED = {True: 0.1, False: 0.3}
+UNCONFIRMED, UNCONFIRMED_ALONE = 0.1, 0.3
 """Share by which phi_B may be off of a car that is more than two masses, with and without load torque: 9.5 and 28 %
 were the most of four detailed cars."""
 
@@ -89,7 +89,7 @@ class Identified:
         late_wheel_speed: by how much the wheel speed is late, if the recording tells.
         quality: on the last quarter of the recording.
         warnings: what may be wrong, a sentence each.
-        driven: C and phi_B as a plant tells them that was driven by the recorded torque, where the model does not
+        plant_fit: C and phi_B as a plant tells them that was driven by the recorded torque, where the model does not
             explain the car.
     """
 
@@ -100,7 +100,7 @@ class Identified:
     late_wheel_speed: LateWheelSpeed | None
     quality: Quality
     warnings: tuple[str, ...]
-    driven: Step | None = None
+    plant_fit: Step | None = None
 
     @property
     def explained(self) -> bool:
@@ -110,7 +110,7 @@ class Identified:
     @property
     def unconfirmed(self) -> float:
         """Share by which phi_B of the filter may be off where the model does not explain the car."""
-        return UNCONFIRMED[self.predictor.measured]
+        return UNCONFIRMED if self.name == WITH_LOAD else UNCONFIRMED_ALONE
 
     @property
     def p(self) -> Parameters:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..base.argument_kinds import require_each, require_kind
+from ..base.errors import DrivelineError
 from ..design.design_weights import records
 from ..loop.built_fmus import built_together
 from ..loop.places import NATIVE, PLANTS
@@ -46,10 +47,14 @@ def identify(
     if found.explained or not found.found.told_by("phi_B"):
         return found
     log("driving both plants by the recorded torque, as the model does not explain the car")
-    settings = built_together(Settings(plant) for plant in PLANTS)[0]
-    if settings.build == NATIVE:  # the other build would take minutes
-        found = replace(found, driven=driven_plants(found, vehicle or {}, settings))
-    return replace(found, warnings=(*found.warnings, *diagnose_driven(found)))
+    failed = None
+    try:
+        # the other build would take minutes
+        settings = built_together(Settings(plant, build=NATIVE) for plant in PLANTS)[0]
+        found = replace(found, plant_fit=driven_plants(found, vehicle or {}, settings))
+    except DrivelineError as reason:
+        failed = reason
+    return replace(found, warnings=(*found.warnings, *diagnose_driven(found, failed)))
 
 
 def known(vehicle: Mapping[str, Any]) -> tuple[Parameters, Vehicle]:

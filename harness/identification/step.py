@@ -201,9 +201,9 @@ def fitted(
         noise: of the motor speed in rad/s.
         vehicle: entries of the vehicle file as the car is known.
         starts: by what it may be moved; the search begins with the best of them.
-        most: Jacobians of each of two searches.
+        most: evaluations of each of two searches, without those for derivatives.
         origin: of what is searched: least_squares differentiates by shares of it, and from 0 in steps that are lost in
-            the rounding of what follows from C.
+            the rounding of what follows from C. 1 makes them 1e-3; 0 keeps the bits of one step.
     """
     system, known = _plant(settings.replace(plant=plant)), with_estimates(vehicle)
     names = [name for name in SEARCHED if name != "damping" or plant != PLANTS[0]]
@@ -215,7 +215,7 @@ def fitted(
         """Over the noise, then what is known before."""
         x = x - origin
         try:
-            omega_1 = _driven(system, plant, step, known, dict(zip(names, x.tolist(), strict=True)))
+            omega_1 = _motor_speed(system, plant, step, known, dict(zip(names, x.tolist(), strict=True)))
         except (ParameterFileError, SimulationError):
             return np.full(len(step.omega_1) + len(x), 1e3)
         return np.concatenate([(omega_1 - step.omega_1) / size, x / spread])
@@ -252,8 +252,10 @@ def _plant(settings: Settings) -> System:
     )
 
 
-def _driven(system: System, plant: str, step: Tip, known: Mapping[str, Any], moved: Mapping[str, float]) -> np.ndarray:
-    """Motor speed in rad/s at the samples, of a car that is moved from what is known."""
+def _motor_speed(
+    system: System, plant: str, step: Tip, known: Mapping[str, Any], moved: Mapping[str, float]
+) -> np.ndarray:
+    """In rad/s at the samples, of a car that is moved from what is known."""
     by = {name: float(np.exp(value)) for name, value in moved.items()}
     car = {**known, **{name: known.get(name, DEFAULT_CAR[name]) * by[name] for name in by if name in DEFAULT_CAR}}
     full = {**DEFAULT_CAR, **of_one_car(car, FOLLOW)}

@@ -152,8 +152,8 @@ def _filled(cells: Sequence[str]) -> int:
 
 
 def _are_units(cells: Sequence[str], names: Sequence[str]) -> bool:
-    """Whether a row below names holds units, for each name one or nothing. Beside that of a time a third of the
-    others may be none, as `enum`."""
+    """Whether a row below names holds units, for each name one or nothing. If one is that of a time, a third of
+    them may be none, as `enum`."""
     units = {k: unit for k, cell in enumerate(cells) if (unit := cell.strip(" []()"))}
     named = all(k < len(names) and names[k].strip() for k in units)
     none = [unit for unit in units.values() if not known(unit)]

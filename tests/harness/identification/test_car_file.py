@@ -1,6 +1,7 @@
 """What identification leaves behind: a vehicle file that every command takes, and a document with all of it."""
 
 import json
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,7 +9,8 @@ import numpy as np
 import pytest
 
 from driveline.fmus.building.parameter_files import read_vehicle
-from driveline.harness.identification import car_file
+from driveline.harness.base.errors import DrivelineError
+from driveline.harness.identification import car_file, prior_knowledge
 from driveline.harness.identification.car_file import WIDEST_INTERVAL
 from driveline.harness.identification.diagnostics import LACKING
 from driveline.harness.identification.drive_train import Parameters
@@ -19,6 +21,8 @@ from driveline.harness.identification.identification_report_html import verdict
 from driveline.harness.identification.identify import WITHOUT_LOAD, Identified, Quality
 from driveline.harness.identification.step import Step
 from driveline.harness.identification.two_mass_equivalent import detailed_over_design, equivalent
+from driveline.harness.loop.settings import Settings
+from driveline.harness.recordings.measurement import Measurement
 from driveline.harness.recordings.source import RecordingError
 from tests.harness.identification.simulated import LOOP, NOISE, identified
 
@@ -83,20 +87,44 @@ def gap(of: Identified) -> tuple[float, float]:
 
 def test_of_a_car_that_is_not_explained_the_plant_that_was_driven_tells_stiffness_and_gap() -> None:
     by = Step("ValidationVehicle", {"C": 120.0, "phi_B": 0.17}, {"C": 0.02, "phi_B": 0.01}, 0.2, 0.15)
-    car = replace(LACKS, driven=by)
+    car = replace(LACKS, plant_fit=by)
     assert car_file.of_car(car) == pytest.approx((120.0, 2.4))
     assert gap(car) == pytest.approx((0.17, 0.0017))
     assert car_file.identified_car(car) == {"C": 120.0, "phi_B": 0.17, "tau": 0.00312346}
     assert "ValidationVehicle, driven by the recorded torque, meets" in next(diagnose_driven(car))
     wide = replace(by, halves={"C": 0.02, "phi_B": 1.01 * WIDEST_INTERVAL})
-    assert "phi_B" not in car_file.identified_car(replace(LACKS, driven=wide))
+    assert "phi_B" not in car_file.identified_car(replace(LACKS, plant_fit=wide))
 
 
-@pytest.mark.parametrize(("of", "share"), [(LACKS, 0.1), (replace(FOUND, name=WITHOUT_LOAD), 0.1), (FOUND, 0.0)])
-def test_a_gap_that_no_plant_confirms_is_as_wide_as_the_filter_may_be_off(of: Identified, share: float) -> None:
+NO_PLANT = "too small, so wide is its interval, as no plant that was driven by the recorded torque confirms it"
+
+
+@pytest.mark.parametrize(
+    ("of", "share", "message"),
+    [
+        (LACKS, 0.1, f"the gap of two masses is not that of this car: phi_B may be up to 10 % {NO_PLANT}"),
+        (replace(FOUND, name=WITHOUT_LOAD), 0.3, f"without load torque: phi_B may be up to 30 % {NO_PLANT}"),
+    ],
+)
+def test_a_gap_that_no_plant_confirms_is_as_wide_as_the_filter_may_be_off(
+    of: Identified, share: float, message: str
+) -> None:
     value, half = gap(of)
-    assert (half == pytest.approx(share * value)) == (share > 0.0)
-    assert "its interval is that wide" in next(diagnose_driven(of))
+    assert half == pytest.approx(share * value)
+    assert [*diagnose_driven(of)] == [message]
+    assert gap(FOUND)[1] < 0.1 * value
+
+
+def test_what_was_identified_is_not_lost_where_no_plants_can_be_built(monkeypatch: pytest.MonkeyPatch) -> None:
+    def built(loops: Iterable[Settings]) -> None:
+        assert {made.build for made in loops} == {"native"}, "the other takes minutes"
+        raise DrivelineError("no C compiler")
+
+    monkeypatch.setattr(prior_knowledge, "built_together", built)
+    monkeypatch.setattr(prior_knowledge, "identified_from", lambda *_: LACKS)
+    one = prior_knowledge.identify(object.__new__(Measurement))
+    assert (one.found, one.plant_fit, one.warnings[:-1]) == (LACKS.found, None, LACKS.warnings)
+    assert one.warnings[-1].endswith("as the plants that would confirm it could not be driven: no C compiler")
 
 
 def test_entries_of_every_type_stay() -> None:

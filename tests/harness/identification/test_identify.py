@@ -73,9 +73,9 @@ def test_of_the_detailed_vehicle_gap_and_frequency_are_found_and_what_the_model_
     vehicle: Identified,
 ) -> None:
     """True are .157 rad and 8.00 Hz; C of the design is 117.4, and the wheels alone are no J_2 for it."""
-    assert vehicle.driven
-    assert vehicle.driven.plant == "ValidationVehicle"
-    assert vehicle.driven.values["phi_B"] == pytest.approx(0.157, rel=0.01)
+    assert vehicle.plant_fit
+    assert vehicle.plant_fit.plant == "ValidationVehicle"
+    assert vehicle.plant_fit.values["phi_B"] == pytest.approx(0.157, rel=0.01)
     assert vehicle.resonance == pytest.approx(8.00, rel=0.01)
     entries = identified_car(vehicle)
     assert entries["C"] == pytest.approx(117.4, rel=0.03)
@@ -84,7 +84,7 @@ def test_of_the_detailed_vehicle_gap_and_frequency_are_found_and_what_the_model_
         "two masses and a tyre do not explain all of this car",
         "the gap of two masses is not that of this car",
     ]
-    assert entries["phi_B"] == pytest.approx(vehicle.driven.values["phi_B"], rel=1e-5)
+    assert entries["phi_B"] == pytest.approx(vehicle.plant_fit.values["phi_B"], rel=1e-5)
 
 
 @pytest.mark.slow

@@ -53,3 +53,13 @@ def test_half_of_the_cells_of_a_row_of_numbers_are_numbers(row: str, are_numbers
 def test_one_row_of_numbers_above_the_names_is_no_beginning() -> None:
     """As many cells as usual, but what follows is none: units of a rate, limits of an alarm."""
     assert dialect("0;40;600;200\n").names == NAMES
+
+
+@pytest.mark.parametrize(
+    ("units", "are_units"), [("s;Nm;enum", True), ("s;Nm;enum;gear", False), ("s;enum", False), ("rpm;Nm;enum", False)]
+)
+def test_beside_a_time_a_third_of_the_units_may_be_none(units: str, are_units: bool) -> None:
+    names = NAMES[: units.count(";") + 1]
+    found = dialect("", f"{units}\n" + f"{';'.join('1234'[: len(names)])}\n" * 6, names)
+    cells = tuple(units.split(";"))
+    assert (found.names, found.units) == ((names, cells) if are_units else (cells, ())), "the last row is of names"
