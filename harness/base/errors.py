@@ -37,5 +37,9 @@ class InstantiationError(SimulationError):
     """An FMU cannot be loaded or instantiated."""
 
 
+class UnpackedFolderError(InstantiationError):
+    """An FMU cannot be, in a folder whose name some cannot take: nothing is said of how it would run in another."""
+
+
 class MissingExtra(DrivelineError):
     """A package of an optional extra is not installed; the message names the extra."""

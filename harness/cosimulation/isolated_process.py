@@ -16,7 +16,7 @@ from threading import Thread
 from time import monotonic
 from typing import Any
 
-from ..base.errors import SimulationError
+from ..base.errors import InstantiationError, SimulationError, UnpackedFolderError
 from .call_trace import AT_START, FUNCTIONS, CallRecord
 from .process_answers import Answer, Bytes, InvalidAnswer, receive
 
@@ -72,9 +72,18 @@ class IsolatedProcess:
 
         Raises:
             SimulationError: an FMU has ended the process, or a call lasts too long; of no more use then.
+            UnpackedFolderError: an FMU cannot be instantiated, and the folder has a name that some cannot take.
             Exception: what the function raised, if it is one of `harness.cosimulation.process_answers.ERRORS`.
         """
-        return list(self._asked(function, arguments, 0, None).texts)
+        try:
+            return list(self._asked(function, arguments, 0, None).texts)
+        except SimulationError as error:
+            called = FUNCTIONS[self._at()[1] - 1]
+            fails = isinstance(error, InstantiationError) or (not self.alive and "Instantiate" in called)
+            if str(self.folder).isascii() or not fails:
+                raise
+            where = f"{self.folder.parent}, whose name is not plain ASCII, which some FMUs cannot take; see TMPDIR"
+            raise UnpackedFolderError(f"{error}; it was unpacked to {where}") from error
 
     def fetch(
         self, size: int, function: Callable[..., Any], *arguments: Any, watch: Callable[[float], None] | None = None

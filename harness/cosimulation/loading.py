@@ -106,13 +106,7 @@ def _isolated(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterat
     names = [label(*item) for item in fitted.interfaces.items()]
     isolated = IsolatedProcess(names, fitted.system.limits.call, folder)
     try:
-        try:
-            isolated.ask(_load, fitted, make_steps)
-        except SimulationError as error:
-            if str(isolated.folder).isascii():
-                raise
-            where = f"{isolated.folder.parent}, whose name is not plain ASCII, which some FMUs cannot take; see TMPDIR"
-            raise type(error)(f"{error}; it was unpacked to {where}") from error
+        isolated.ask(_load, fitted, make_steps)
         yield IsolatedLoop(isolated, fitted)
         if isolated.alive:
             try:

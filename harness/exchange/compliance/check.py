@@ -2,9 +2,10 @@
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
-from ...base.errors import DrivelineError, InstantiationError, SimulationError
+from ...base.errors import DrivelineError, InstantiationError, SimulationError, UnpackedFolderError
 from ...base.plain_text import plain
 from ...cosimulation import fmu_archive
 from ...cosimulation.description import KINDS
@@ -112,7 +113,9 @@ def _behaviour(interface: Interface, rules: Sequence[Rule], limits: Limits) -> I
                 if isolated:
                     isolated.close()
                 isolated = None
-                yield rule.verdict([str(error)])
+                # what may be the fault of our folder is not said to be that of the FMU
+                excused = isinstance(error, UnpackedFolderError) and rule.name in FIRST
+                yield (replace(rule, severity=Severity.NOTE) if excused else rule).verdict([str(error)])
                 if rule.name in FIRST:
                     yield from (other.verdict([], tried=False) for other in rules[tried:])
                     return

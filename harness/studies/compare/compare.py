@@ -123,15 +123,6 @@ def run_case(
     return Outcome(case, evaluate(results, manoeuvre), results)
 
 
-class _Together(NamedTuple):
-    """Cases of one manoeuvre on one plant."""
-
-    cases: Sequence[Case]
-
-    def __str__(self) -> str:
-        return f"{self.cases[0].manoeuvre} on {self.cases[0].plant_name}"
-
-
 def run_cases(
     todo: Sequence[Case],
     output: Path,
@@ -140,8 +131,8 @@ def run_cases(
     format: str = "csv",
     options: FigureOptions = PLAIN,
 ) -> tuple[list[Outcome], list[Path]]:
-    """Runs the cases in parallel and draws their figures where they have run; gives their outcomes in the order of the
-    cases, and the files of figures.
+    """Runs the cases in parallel, then draws their figures in parallel; gives their outcomes in the order of the cases,
+    and the files of figures.
 
     Args:
         output: folder for the figures, and in it that for the files of signals, `RUNS`.
@@ -150,22 +141,33 @@ def run_cases(
     """
     from ...simulation.many_runs import run_many  # one run does without
 
-    each = [_Together(list(group)) for _, group in groupby(todo, lambda case: case[:2])]
-    made = run_many(partial(_made_together, (output, loops, manoeuvres, format), options), each)
-    return [one for outcomes, _ in made for one in outcomes], [file for _, files in made for file in files]
+    run = partial(run_case, output=output / RUNS, loops=loops, manoeuvres=manoeuvres, format=format)
+    outcomes = run_many(run, todo)
+    draw = partial(_figure, folder=output, options=options, manoeuvres=manoeuvres)
+    figures = run_many(draw, drawn(outcomes, manoeuvres), label="drawing")
+    return outcomes, [file for files in figures for file in files]
 
 
-def _made_together(
-    given: tuple[Path, Loops, Manoeuvres, str], options: FigureOptions, runs: _Together
-) -> tuple[list[Outcome], list[Path]]:
-    output, loops, manoeuvres, format = given
-    outcomes = [run_case(case, output / RUNS, loops, manoeuvres, format) for case in runs.cases]
-    return outcomes, figure(outcomes, output, options, manoeuvres)
-
-
-def together(outcomes: Iterable[Outcome]) -> list[list[Outcome]]:
+class Together(list[Outcome]):
     """What is of one manoeuvre on one plant: the run without damping, then those with each controller."""
-    return [list(each) for _, each in groupby(outcomes, lambda outcome: outcome.case[:2])]
+
+    def __str__(self) -> str:
+        return f"{self[0].case.manoeuvre} on {self[0].case.plant_name}"
+
+
+def together(outcomes: Iterable[Outcome]) -> list[Together]:
+    """By manoeuvre and plant, in the order of the outcomes."""
+    return [Together(each) for _, each in groupby(outcomes, lambda each: (each.case.plant, each.case.manoeuvre))]
+
+
+def drawn(outcomes: Iterable[Outcome], manoeuvres: Manoeuvres = MANOEUVRES) -> list[Together]:
+    """What has a figure: what is `together`, but of the usual manoeuvres those that are `DRAWN`."""
+
+    def usual(name: str) -> bool:
+        return name in COMPARED and manoeuvres[name].description == MANOEUVRES[name].description
+
+    names = [name for name in manoeuvres if name in DRAWN or not usual(name)]
+    return [each for each in together(outcomes) if each[0].case.manoeuvre in names]
 
 
 def rows_of(outcomes: Sequence[Outcome]) -> list[Row]:
@@ -182,16 +184,10 @@ def write_tables(outcomes: Sequence[Outcome], folder: Path, title: str = DAMPING
     return [table, metrics]
 
 
-def figure(
-    outcomes: Sequence[Outcome], folder: Path, options: FigureOptions = PLAIN, manoeuvres: Manoeuvres = MANOEUVRES
-) -> list[Path]:
-    """Draws the runs of one manoeuvre on one plant, a step close up and all else whole, but for the usual manoeuvres
-    that are not `DRAWN`; returns the files."""
+def _figure(outcomes: Together, folder: Path, options: FigureOptions, manoeuvres: Manoeuvres) -> list[Path]:
+    """Draws the runs of one manoeuvre on one plant, a step close up and all else whole; returns the files."""
     case = outcomes[0].case
     manoeuvre, plant = manoeuvres[case.manoeuvre], case.plant_name
-    usual = case.manoeuvre in COMPARED and manoeuvre.description == MANOEUVRES[case.manoeuvre].description
-    if usual and case.manoeuvre not in DRAWN:
-        return []
     from ...views.drive_figure import plot_drive  # not for those who draw nothing
     from ...views.step_figure import plot_step
 

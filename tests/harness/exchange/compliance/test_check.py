@@ -193,6 +193,18 @@ def test_a_fault_in_the_behaviour_is_found_and_leaves_nothing_behind(tmp_path, f
     assert list(temporary.iterdir()) == []
 
 
+def test_a_folder_that_the_fmu_cannot_take_is_no_error_of_it(tmp_path, monkeypatch):
+    """PythonFMU's binary crashes there; one that crashes in a step does so anywhere."""
+    relay, stranger = build_relay(tmp_path, RELAY), build_stranger(tmp_path, IN_DO_STEP="exit(0)")
+    temporary = tmp_path / "für"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    severity, problem = broken(relay)["runs"]
+    assert severity == "note"
+    assert f"it was unpacked to {temporary}, whose name is not plain ASCII" in problem
+    assert broken(stranger)["runs"][0] == "error"
+
+
 @pytest.mark.parametrize("build", ["native", "fmi3"])
 @pytest.mark.slow
 def test_a_parameter_that_is_called_tunable_and_is_fixed_is_found(request, tmp_path, build):

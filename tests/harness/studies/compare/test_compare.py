@@ -10,16 +10,15 @@ import driveline
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
+from driveline.harness.simulation import many_runs
 from driveline.harness.studies.compare.compare import (
     Outcome,
     cases,
-    figure,
+    drawn,
     loops_of,
     run_cases,
-    together,
     write_tables,
 )
-from driveline.harness.views import drive_figure, step_figure
 
 OURS = PLACES["controller"][0]
 
@@ -32,16 +31,12 @@ def test_runs_without_and_with_damping_are_neighbours():
     ]  # fmt: skip
 
 
-def test_each_manoeuvre_has_a_figure_but_five_of_the_usual_ten(monkeypatch, tmp_path):
-    drawn = []
-    for kind, module in (("drive", drive_figure), ("step", step_figure)):
-        monkeypatch.setattr(module, f"plot_{kind}", lambda *given, kind=kind: drawn.append((kind, given[3].name)) or [])
+def test_each_manoeuvre_has_a_figure_but_five_of_the_usual_ten():
     metrics: Any = None
     results: Any = None
     names = ["tipin15", "tipin15r", "creep", "drive", "prbs", "hill_start", "regen"]
-    for runs in together(Outcome(each, metrics, results) for each in cases(["A"], names, ["B"])):
-        figure(runs, tmp_path)
-    assert drawn == [("step", "A_tipin15"), ("drive", "A_drive"), ("drive", "A_hill_start"), ("step", "A_regen")]
+    runs = drawn(Outcome(each, metrics, results) for each in cases(["A"], names, ["B"]))
+    assert [each[0].case.manoeuvre for each in runs] == ["tipin15", "drive", "hill_start", "regen"]
 
 
 def test_plants_and_manoeuvres_of_the_same_name_are_refused():
@@ -90,7 +85,12 @@ def compared(native, tmp_path_factory):
     """Folder with what a comparison of one step on both plants writes."""
     folder = tmp_path_factory.mktemp("compare")
     loops = loops_of({(plant, OURS): Settings(plant=plant, folder=native.parent) for plant in PLANTS})
-    outcomes, figures = run_cases(cases(PLANTS, ["tipin15"], [OURS]), folder, loops)
+    asked: list[int] = []
+    run_many = many_runs.run_many
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(many_runs, "run_many", lambda *a, **k: asked.append(len(a[1])) or run_many(*a, **k))
+        outcomes, figures = run_cases(cases(PLANTS, ["tipin15"], [OURS]), folder, loops)
+    assert asked == [4, 2]  # every case by itself, so that all processes have some
     assert figures == [folder / f"{plant}_tipin15.png" for plant in PLANTS]
     write_tables(outcomes, folder)
     return folder
