@@ -9,8 +9,8 @@ ENDING = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(sig
 
 
 def main() -> int:
-    """Runs the command line; returns its exit code. Stopped while that is being imported, one line says so too; what
-    comes after it, while the interpreter ends, changes nothing that was written or said."""
+    """Runs the command line in a process that ends with it; returns its exit code. Stopped while that is being
+    imported, one line says so too; what comes after it, while the interpreter ends, changes nothing written."""
     code = 0
     try:
         for number in ENDING:
@@ -27,8 +27,8 @@ def main() -> int:
             signal.signal(number, signal.SIG_IGN)
     if code > 128:  # threads may still compute, which no interpreter that ends bears
         atexit._run_exitfuncs()
-        sys.stdout.flush()
-        sys.stderr.flush()
+        for stream in filter(None, (sys.stdout, sys.stderr)):  # None where it was closed
+            stream.flush()
         os._exit(code)
     return code
 

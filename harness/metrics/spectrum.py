@@ -47,12 +47,16 @@ class BandSpectrum:
     """
 
     def __init__(self, x: np.ndarray, T_s: float) -> None:
-        line = np.linspace(x[0], x[-1], len(x))
-        self._x, self._T_s = np.subtract(x, line, out=line), T_s
+        self._x, self._T_s = x, T_s
+
+    @cached_property
+    def _without_line(self) -> np.ndarray:
+        line = np.linspace(self._x[0], self._x[-1], len(self._x))
+        return np.subtract(self._x, line, out=line)
 
     @cached_property
     def _transform(self) -> np.ndarray:
-        return np.fft.rfft(self._x, axis=0)
+        return np.fft.rfft(self._without_line, axis=0)
 
     def rms(self, band: tuple[float, float], derivative: bool = False) -> float:
         """As by `band_rms`."""
@@ -68,11 +72,11 @@ class BandSpectrum:
             Absent: as by `band_rms`.
         """
         n = len(self._x)
-        f = np.fft.rfftfreq(n, self._T_s)
-        within = np.flatnonzero((f >= band[0]) & (f <= band[1]))
         if band[0] * n * self._T_s < 1.0 and band[0] > 0.0:
             raise Absent(f"the run is shorter than a period of {band[0]:g} Hz")
-        X = self._transform[within] if n <= MOST_AT_ONCE else _in_blocks(self._x, within)
+        f = np.fft.rfftfreq(n, self._T_s)
+        within = np.flatnonzero((f >= band[0]) & (f <= band[1]))
+        X = self._transform[within] if n <= MOST_AT_ONCE else _in_blocks(self._without_line, within)
         if derivative:
             X = (X.T * (2j * np.pi * f[within])).T
         return np.sqrt(2.0) / n * X

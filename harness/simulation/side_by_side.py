@@ -3,6 +3,7 @@
 One function is at work at a time, so that it need not be prepared for others.
 """
 
+import os
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextvars import copy_context
@@ -137,6 +138,9 @@ class _Turn(KeptLoops):
 
 _idle: list[_Turn] = []
 """Those whose case has ended: to begin one takes longer than to bring an FMU to its first step."""
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=lambda: _idle.clear())  # threads do not go with a fork
 
 
 class _RequestedLoop(NamedTuple):

@@ -60,10 +60,11 @@ def simulate(
     require_steps(manoeuvre.duration, made.step_size)
     _warn(manoeuvre, given, made.step_size)
     system = require_there(made)
+    inputs, offered = signals(manoeuvre, made.control, made.step_size), _offered(manoeuvre, system)
     experiment = Experiment(
         duration=manoeuvre.duration,
         step_size=made.step_size,
-        inputs={**signals(manoeuvre, made.control, made.step_size), **_offered(manoeuvre, system)},
+        inputs={**inputs, **offered} if offered else inputs,  # the same mapping where runs are alike
         parameters=given,
         scheme=made.scheme,
         tolerance=made.tolerance,

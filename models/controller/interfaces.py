@@ -30,9 +30,7 @@ class Addition(NamedTuple):
     """What a law adds to the driver's demand."""
 
     damping: Annotated[float, Real("N.m", "torque against the oscillation, whose half swings are counted")]
-    landing: Annotated[
-        float, Real("N.m", "the rest: shape of the demand, soft landing, less damping where wheels slip")
-    ]
+    rest: Annotated[float, Real("N.m", "the rest: shape of the demand, soft landing, less damping where wheels slip")]
 
 
 class Part(Protocol):

@@ -172,7 +172,7 @@ class Stopping:
     def find_spec(self, name, *_):
         if name == "driveline.harness":
             os.kill(os.getpid(), signal.SIGTERM)
-if "early" in sys.argv:
+if "early" in sys.argv[1]:
     sys.meta_path.insert(0, Stopping())
 for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
     atexit.register(os.kill, os.getpid(), number)
@@ -180,11 +180,13 @@ sys.argv[1:] = ["map", "--help"]
 sys.exit(main())
 """
     ends = {}
-    for when in ("early", "late"):
-        command = [sys.executable, "-c", program, when]
+    for when in ("early", "early, closed", "late"):
+        closes = "if 'closed' in sys.argv[1]: sys.stdout = None\n"
+        command = [sys.executable, "-c", "import sys\n" + closes + program, when]
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, preexec_fn=heed_signals, check=False)
         ends[when] = done.returncode, done.stdout[:5], done.stderr
-    assert ends == {"early": (143, "", "driveline: stopped\n"), "late": (0, "usage", "")}
+    stopped = (143, "", "driveline: stopped\n")
+    assert ends == {"early": stopped, "early, closed": stopped, "late": (0, "usage", "")}
 
 
 def test_a_stop_that_python_makes_another_error_of_is_a_stop() -> None:

@@ -96,7 +96,7 @@ def test_without_damping_none_stands_in_the_place_of_a_controller_that_is_always
     off = simulate(SHORT, **given, **theirs, control=False)
     np.testing.assert_array_equal(off, simulate(SHORT, **given, controller=NO_DAMPING, control=False))
     system = loop(PLANTS[0], **given, controller=relay, mapping=FEEDTHROUGH)
-    at_times = signals(SHORT) | {"controller.enable": lambda t: t < 0.5}
+    at_times = {**signals(SHORT), "controller.enable": lambda t: t < 0.5}
     with pytest.raises(WiringError, match=r"controller\.enable: Relay\.fmu does not have it and .* always 1"):
         run(system, Experiment(SHORT.duration, inputs=at_times, parameters=start(SHORT)))
 

@@ -12,7 +12,7 @@ from driveline.harness.metrics.declaration import Absent
 from driveline.harness.metrics.estimate import estimate_metrics
 from driveline.harness.metrics.frequency_response import amplitude_spectrum, frequency_response
 from driveline.harness.metrics.oscillation import low_passed
-from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, BandSpectrum
+from driveline.harness.metrics.spectrum import DRIVE_TRAIN, TO_50_HZ, BandSpectrum, band_rms
 
 T_S = 0.002
 T = T_S * np.arange(3000)
@@ -89,6 +89,13 @@ def test_too_few_samples_for_the_low_pass_have_no_answer(samples, T_s):
     with pytest.raises(Absent, match=f"{samples} samples every"):
         low_passed(np.ones(samples), T_s, 12.0)
     assert low_passed(np.ones(10), 0.99 / 24.0, 12.0) == pytest.approx(np.ones(10))
+
+
+@pytest.mark.parametrize("samples", [0, 99])
+def test_a_band_below_a_period_of_the_run_has_no_answer(samples: int) -> None:
+    with pytest.raises(Absent, match="shorter than a period of 5 Hz"):
+        band_rms(np.zeros(samples), 2e-3, (5.0, 50.0))
+    assert band_rms(np.zeros(100), 2e-3, (5.0, 50.0)) == 0.0
 
 
 def test_the_response_to_a_step_is_that_of_the_filter() -> None:

@@ -1,6 +1,7 @@
 """Cases side by side: one function at work at a time, and the answers of single runs."""
 
 import os
+import signal
 import threading
 import time
 from dataclasses import replace
@@ -13,6 +14,7 @@ import pytest
 
 from driveline.fmus.lanes_here import lanes_here
 from driveline.harness.base.errors import SimulationError, WiringError
+from driveline.harness.cosimulation.master import Loop
 from driveline.harness.loop.lane_libraries import _library
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation import many_runs, side_by_side
@@ -168,6 +170,33 @@ def test_threads_are_those_of_the_batch_before_and_end_where_it_is_stopped(both_
         if "_work" in thread.name:
             thread.join(5.0)
     assert threading.active_count() == before
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no forks here")
+def test_a_process_that_forks_after_a_batch_answers_the_next(both_built, lanes):
+    def ended(case: int) -> int:
+        simulate(TIPIN, seed=case, folder=both_built)
+        return case
+
+    assert run_many(ended, range(4), workers=1) == list(range(4))
+    child = os.fork()
+    if child == 0:
+        signal.alarm(30)  # ends it where it hangs
+        os._exit(run_many(ended, range(4), workers=1) != list(range(4)))
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+def test_runs_that_are_alike_begin_with_what_is_known_of_the_first(both_built, lanes, monkeypatch):
+    known: list[bool] = []
+    begin = Loop.begin
+
+    def noted(self, experiment, alike=None):
+        known.append(alike is not None)
+        return begin(self, experiment, alike)
+
+    monkeypatch.setattr(Loop, "begin", noted)
+    run_many(lambda seed: simulate(TIPIN, seed=seed, folder=both_built) is None, range(4), workers=1)
+    assert known == [False, True, True, True]
 
 
 def test_the_first_case_with_an_error_is_named(both_built, lanes):
