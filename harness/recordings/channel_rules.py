@@ -216,10 +216,10 @@ def uncertain(channel: Channel) -> Iterator[Finding]:
         return
     _, at = unwrapped(channel)
     if len(at):
-        k, to = int(at[0]), channel.values.max()
+        k, x = int(at[0]), channel.values
         odd = (
-            f"is {channel.values[k]:g} after {channel.values[k - 1]:g} {np.diff(channel.time)[k - 1]:.3g} s before; a "
-            f"counter up to {to:g} may have run over more often, or begun anew, and is left out{more(len(at), 'row')}"
+            f"goes from {x[k - 1]:g} to {x[k]:g} within {channel.time[k] - channel.time[k - 1]:.3g} s, in which a "
+            f"counter up to {x.max():g} may have run over unseen, or begun anew; it is left out{more(len(at), 'row')}"
         )
         yield at_samples(channel, RUN_OVER, at, odd)
 
