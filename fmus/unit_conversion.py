@@ -42,8 +42,8 @@ TORQUE = re.compile(r"(?P<prefix>[mkM]?)N[ .-]?m(?P<damping>[ .]?s)?(?P<per>/.+)
 INERTIA = re.compile(r"kg[ .]?m\^?2")
 """N.m, N.m/rad, N.m.s/rad, and kg.m2, with or without dots."""
 
-WITH_UNIT = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?) *([^\d\s.,_].*)")
-"""A number and a unit."""
+WITH_UNIT = re.compile(r"([+-]?[\d.]+(?:[eE][+-]?\d+)?)(?: +|(?![\d\s.,_]))(\S.*)")
+"""A number and a unit, which begins with a digit (1/min) after a blank alone."""
 
 NESTED = re.compile(r"/\(([^()/]+)/([^()/]+)\)")
 """A quotient below the line: N.m/(rad/s)."""

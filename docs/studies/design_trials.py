@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from enum import Enum
 from functools import cache
-from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,7 +14,7 @@ from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.loop.settings import Settings
 from driveline.harness.loop.settings import settings as settings_of
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.manoeuvres.for_car import for_car
+from driveline.harness.manoeuvres.for_car import for_car, given_torque
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
@@ -60,7 +59,7 @@ def measured(trial: Trial, seeds: tuple[int, ...] = (1, 2, 3), settings: Setting
         settings: of the runs beside what the trial says.
     """
     given, control = parameters(trial), trial.gains is not Gains.NONE
-    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], given.get("motor.T_max", inf))
+    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], given_torque(given))
     made = settings_of(settings, plant=trial.plant, control=control, parameters=given)
     return mean([evaluate(simulate(manoeuvre, made, seed=seed), manoeuvre) for seed in seeds])
 

@@ -1,7 +1,6 @@
 """What the tutorial shows: a tip-in that swings, the same one damped, with other gains, and on a van."""
 
 from collections.abc import Mapping
-from math import inf
 from typing import Any
 
 from driveline.fmus.building.parameter_files import read_vehicle
@@ -9,7 +8,7 @@ from driveline.harness.cosimulation.results import Results
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.manoeuvres.for_car import for_car
+from driveline.harness.manoeuvres.for_car import for_car, given_torque
 from driveline.harness.metrics.evaluate import at_samples, evaluate
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
@@ -42,14 +41,13 @@ def cars() -> dict[str, dict[str, Any]]:
 
 def _run(row: tuple[Mapping[str, Any], bool]) -> Results:
     parameters, control = row
-    return simulate(for_car(TIPIN, parameters.get("motor.T_max", inf)), parameters=parameters, control=control)
+    return simulate(for_car(TIPIN, given_torque(parameters)), parameters=parameters, control=control)
 
 
 def _table(rows: Mapping[str, tuple[Mapping[str, Any], bool]]) -> Table:
     found = zip(rows.values(), run_many(_run, rows.values(), label="tutorial"), strict=True)
     cells = (
-        metrics_cells(evaluate(results, for_car(TIPIN, parameters.get("motor.T_max", inf))))
-        for (parameters, _), results in found
+        metrics_cells(evaluate(results, for_car(TIPIN, given_torque(parameters)))) for (parameters, _), results in found
     )
     return Table("tip-in", COLUMNS, dict(zip(rows, cells, strict=True)))
 
@@ -69,7 +67,7 @@ def measure() -> Measured:
     figures = {
         "oscillation": run_drawing(both[WITHOUT], TIPIN, title, FigureOptions(window=(0.8, 3.0))),
         "damped": step_drawing(both, TIPIN, PLANTS[0]),
-        "van": step_drawing(van, for_car(TIPIN, of_van.get("motor.T_max", inf)), f"{PLANTS[0]}, van"),
+        "van": step_drawing(van, for_car(TIPIN, given_torque(of_van)), f"{PLANTS[0]}, van"),
     }
     return Measured({"tipin15": _table(rows())}, figures)
 

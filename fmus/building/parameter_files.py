@@ -260,7 +260,7 @@ SYNONYMS = {
     **dict.fromkeys(("weight", "curb", "kerb", "vehicle"), "mass"),
     **dict.fromkeys(("reduction", "final_drive", "i_total"), "ratio"),
     **dict.fromkeys(("cd", "c_d", "cw", "c_w", "cx", "drag_coefficient"), "air_drag"),
-    "rotor": "motor",
+    "rotor": "motor_inertia",
     "lash": "backlash",
     "cog": "gravity",
 }
@@ -271,7 +271,7 @@ def _nearest(name: str, known: Owners, others: Collection[str]) -> str:
     """What a name may have been meant to be: what its words describe, of a data sheet first, else what is like it."""
     words = name.lower().split("_")
     meant_words = SYNONYMS.get(name.lower(), "_".join(SYNONYMS.get(word, word) for word in words)).split("_")
-    places = _described(words, known) or _described(meant_words, known)
+    places = _described(meant_words, known) or _described(words, known)
     first = [each for each, at in places.items() if at == min(places.values()) and name not in RENAMED]
     near = f"did you mean {' or '.join(first[:3])}?" if first else meant(name, sorted({*known, *others}))
     return f"; {near}" if near else ""

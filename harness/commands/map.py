@@ -1,6 +1,6 @@
 """Drafts which variables of somebody else's FMU are those that the loop exchanges with a place: by names, causality and
-unit. What is not sure is marked, what is missing is named; where nothing fits, the exit code is 2. The file is what
---map of the other commands takes.
+unit. What is not sure is marked, what is missing is named; where nothing fits that a run needs, the exit code is 2. The
+file is what --map of the other commands takes.
 
 examples:
   driveline map their_car.fmu --place plant --output theirs.toml
@@ -30,8 +30,9 @@ def run(args: Arguments) -> int:
     from ..exchange.mapping_draft import as_toml, draft
 
     proposals = draft(Interface(args.fmu), args.place)
-    if all(each.theirs is None for each in proposals):
-        names = ", ".join(each.port.variable for each in proposals if each.port.name not in OPTIONAL)
+    needed = [each for each in proposals if each.port.name not in OPTIONAL]
+    if all(each.theirs is None for each in needed):
+        names = ", ".join(each.port.variable for each in needed)
         raise DrivelineError(f"{args.fmu}: nothing in it fits a {args.place}, which has {names}")
     text = as_toml(proposals, args.fmu.name, args.place)
     if args.output is not None:

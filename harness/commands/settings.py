@@ -61,8 +61,8 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
     """What the options say for each plant with each controller, by the names of both.
 
     Of several controllers the file of parameters is for those that have all that it names, and a value of --set for
-    those that have the parameter; the others keep theirs. Where an FMU of somebody else stands beside blocks of the
-    project in a place, --map is for that FMU.
+    those that have the parameter; the others keep theirs. So is an entry of --map; where FMUs of somebody else stand
+    beside blocks of the project in a place, it is for those.
 
     Args:
         plants: none: all of the project.
@@ -78,15 +78,14 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
 
     plants = list(by_name(plants or PLANTS, "plant").values())
     each = by_name(controllers or PLACES["controller"], "controller")
-    blocks = {"plant": plants, "controller": list(each.values())}
-    mapped = [place for place, names in blocks.items() if not set(names) <= set(PLACES[place])]
+    mapped = {place: _mapped(args, place, names) for place, names in (("plant", plants), ("controller", each.values()))}
     several, found = len(each) > 1, dict[tuple[str, str], Settings]()
     for plant in plants:
         refusals = []
         for name, controller in each.items():
-            ours = [p for p, block in (("plant", plant), ("controller", controller)) if block in PLACES[p]]
-            theirs = {n: own for n, own in args.map.items() if n.partition(".")[0] not in {*ours} & {*mapped}}
-            own = dataclasses.replace(args, map=theirs)
+            others = {n: theirs for n, theirs in args.map.items() if n.partition(".")[0] not in mapped}
+            entries = others | mapped["plant"][plant] | mapped["controller"][controller]
+            own = dataclasses.replace(args, map=entries)
             try:
                 made = settings(own, plant, controller, bool(found), several)
             except NotTaken as refusal:
@@ -103,6 +102,24 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
         elif lacking:
             LOG.warning("--set %s: %s has no such parameter and runs without it", parameter, ", ".join(lacking))
     return found
+
+
+def _mapped(args: Loop, place: str, blocks: Iterable[str]) -> dict[str, dict[str, str]]:
+    """For each block in a place its entries of --map; one that none of several has is for all, to be refused."""
+    from ..cosimulation.interface import Interface
+
+    entries = {name: theirs for name, theirs in args.map.items() if name.partition(".")[0] == place}
+    foreign = [block for block in blocks if block not in PLACES[place]]
+    several = entries and len(foreign) > 1
+    has = {block: Interface(Path(block), args.limits).variables for block in foreign} if several else {}
+    none_has = {theirs for theirs in entries.values() if not any(theirs in each for each in has.values())}
+
+    def taken(block: str) -> dict[str, str]:
+        if foreign and block not in foreign:
+            return {}
+        return {name: theirs for name, theirs in entries.items() if theirs in none_has or theirs in has[block]}
+
+    return {block: taken(block) for block in blocks}
 
 
 def plants_settings(args: Any) -> dict[str, Settings]:

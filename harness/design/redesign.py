@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import inf
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from ..loop.places import PLANTS
 from ..loop.settings import Settings
 from ..loop.settings import settings as settings_of
 from ..manoeuvres.catalogue import MANOEUVRES
-from ..manoeuvres.for_car import for_car
+from ..manoeuvres.for_car import for_car, given_torque
 from ..metrics.evaluate import evaluate
 from ..simulation.simulate import simulate
 from .design import design
@@ -41,7 +40,7 @@ def worth(
     true, of_car = loop_parameters(car, plant), controller_parameters(car, plant)
     others = {name: value for name, value in true.items() if name not in of_car}
     parameters = others | controller_parameters(assumed, plant)
-    course = for_car(MANOEUVRES[manoeuvre], parameters.get("motor.T_max", inf))
+    course = for_car(MANOEUVRES[manoeuvre], given_torque(parameters))
     metrics = evaluate(simulate(course, settings_of(settings, plant=plant, parameters=parameters, seed=1)), course)
     return metrics.settling_time, metrics.overshoot
 

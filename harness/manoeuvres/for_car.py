@@ -1,7 +1,8 @@
 """The manoeuvres of the catalogue for a car: their demands are shares of what its motor can do."""
 
+from collections.abc import Mapping
 from dataclasses import replace
-from math import isinf
+from math import inf, isinf
 
 from ...fmus.names import T_MAX
 from ..cosimulation.wiring import fit
@@ -14,6 +15,11 @@ from .signals import FlatSine, Held, Lines, Signal
 def largest_torque(settings: Settings) -> float:
     """Of the motor of a loop in N.m, as it is set or as its FMU starts; inf: the FMU does not tell."""
     return torque_limit(fit(loop(settings)).interfaces["motor"], settings.parameters)
+
+
+def given_torque(parameters: Mapping[str, float]) -> float:
+    """Largest torque of the motor in N.m among parameters of a loop; inf: it is not among them."""
+    return parameters.get("motor.T_max", inf)
 
 
 def share_of(T_max: float) -> float:

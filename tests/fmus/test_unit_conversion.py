@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from driveline.fmus.unit_conversion import LONGEST, SI, factor, known
+from driveline.fmus.unit_conversion import LONGEST, SI, factor, known, quantity
 
 
 @pytest.mark.parametrize(
@@ -116,3 +116,10 @@ def test_a_unit_may_have_exponents_of_one_digit_and_sixty_characters():
 def test_what_does_not_convert_is_refused_by_name(unit, target_unit, reason):
     with pytest.raises(ValueError, match=reason):
         factor(unit, target_unit)
+
+
+@pytest.mark.parametrize("text", ["12000 1/min", "12000 rpm", "12000rpm", "1.2e4U/min"])
+def test_a_unit_follows_its_number_and_begins_with_a_digit_after_a_blank_alone(text):
+    assert quantity(text, "rad/s") == pytest.approx(400.0 * pi)
+    with pytest.raises(ValueError, match="must be a number and a unit"):
+        quantity("120001", "rad/s")

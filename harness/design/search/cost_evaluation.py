@@ -5,14 +5,13 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cache
-from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...cosimulation.system import System
 from ...loop.places import PLACES, PLANTS
 from ...loop.settings import Settings, loop
-from ...manoeuvres.for_car import for_car
+from ...manoeuvres.for_car import for_car, given_torque
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
 from ...simulation.many_runs import many
@@ -69,7 +68,7 @@ class CostEvaluation:
         """The metrics of one run."""
         controller, parameters, run = trial
         given = deviating({**self.car, **parameters}, run.plant, controller, run.deviation)
-        manoeuvre = for_car(run.manoeuvre, given.get("motor.T_max", inf))
+        manoeuvre = for_car(run.manoeuvre, given_torque(given))
         made = self.settings.replace(plant=run.plant, controller=controller, parameters=given, seed=run.seed)
         return evaluate(simulate(manoeuvre, made), manoeuvre)
 

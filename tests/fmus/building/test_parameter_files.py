@@ -85,6 +85,8 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
         ("gear_ratio = 9.0", "gear_ratio is not known; did you mean i?"),
         ("curb_weight = 1887", "curb_weight is not known; did you mean m?"),
         ("rotor_inertia = 0.05", "rotor_inertia is not known; did you mean J_1"),
+        ("rotor = 0.05", "rotor is not known; did you mean J_1"),
+        ("m = '1887 1/min'", "m = '1887 1/min': it is in 1/min, which does not convert into kg"),
         ("inertia = 0.3", "inertia is not known; did you mean J_1 or J_2 or J_w?"),
         ("J_1 = '0.09'", "J_1 = '0.09': it must be a number and a unit; a number alone is in kg.m2"),
         ("J_1 = true", "J_1 = True: it must be a finite number"),

@@ -7,7 +7,7 @@ from driveline.harness.base.errors import DrivelineError, WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.settings import all_settings, settings
 from tests import ROOT
-from tests.foreign import SMALLEST_CONTROLLER, build_car, build_relay
+from tests.foreign import SMALLEST_CONTROLLER, build_car, build_relay, tampered
 from tests.harness.commands import given as record
 
 VAN = str(ROOT / "examples" / "cars" / "van.toml")
@@ -110,6 +110,13 @@ def test_of_several_controllers_a_value_and_a_mapping_are_for_those_that_have_th
         parameters("--set", "controller.k_e=1")
     with pytest.raises(WiringError, match=r"controller\.k_d = 1e\+06: DampingController\.fmu takes"):
         parameters("--set", "controller.k_d=1e6")
+    renamed = tampered(mine, tmp_path / "Renamed.fmu", lambda xml: xml.replace('name="T_ref"', 'name="out"'))
+    both = ["--controller", str(mine), "--controller", str(renamed)]
+    given = parameters("--map", "controller.T_ref=out", "--map", "motor.seed=seed")
+    assert given["Renamed"][1] == {"motor.seed": "seed", "controller.T_ref": "out"}
+    assert given["SmallestController"][1] == {"motor.seed": "seed"}
+    with pytest.raises(WiringError, match=r"in SmallestController\.fmu nowhere does not exist"):
+        parameters("--map", "controller.T_ref=nowhere")
 
 
 @pytest.mark.slow

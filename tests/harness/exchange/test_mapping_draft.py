@@ -78,6 +78,8 @@ def test_a_draft_is_what_runs_take(theirs: Path, native: Path, tmp_path: Path, c
     controller = str(build_relay(tmp_path, SMALLEST_CONTROLLER))
     assert main(["map", controller, "--place", "can", "--output", str(tmp_path / "none")]) == 2
     assert "nothing in it fits a can, which has omega_wheel_L, " in capsys.readouterr().err
+    bus = str(native.parent / "native" / "WheelSpeedCan.fmu")  # has a seed as the motor does, which no run needs
+    assert main(["map", bus, "--place", "motor", "--output", str(tmp_path / "none")]) == 2
     assert not (tmp_path / "none").exists()
     assert main(["map", str(tmp_path / "no.fmu")]) == 2
     assert capsys.readouterr().err.endswith(f"driveline map: there is no FMU {tmp_path / 'no.fmu'}\n")
