@@ -130,6 +130,7 @@ def test_all_that_can_be_printed_may_be_an_argument(capsys, name):
             "--set: c.k@1 is given twice, 1.0 and 2.0; it takes one value",
         ),
         (["record", "--gain-error", "-5"], "argument --gain-error: '-5' is not a share from -0.5 to 1"),
+        *((["record", "--order", order], f"'{order}' is not a whole number from 5 to 12") for order in ("4", "13")),
         (["simulate", "--seed", "1.5"], "'1.5' is not a whole number"),
         *(
             ([*command, "--seed", "1000001"], "argument --seed: '1000001' is not a whole number from 0 to 1000000")

@@ -20,6 +20,7 @@ from driveline.harness.commands.options import (
     output_folder,
     seconds,
     seed,
+    share,
     window,
 )
 from driveline.harness.commands.printing import JsonPrinting, Printing
@@ -46,6 +47,8 @@ Parse = Callable[[str], Any]
         (window, "-1,1", (-1.0, 1.0)),
         (window, "1,1.01", (1.0, 1.01)),
         (seconds, "1e-9", 1e-9),
+        (share, "0", 0.0),
+        (share, "1", 1.0),
         (megabytes, "1e302", round(1e308)),
         *zip([megabytes] * 4, ("1000", "0.29", "1e-6", "1e-7"), (10**9, 290_000, 1, 1), strict=True),
     ],
@@ -74,6 +77,7 @@ def test_what_is_typed_becomes_a_value(parse: Parse, text: str, value: Any) -> N
             r"is not of the form 1\.0,2\.5",
         ),
         (seconds, ("0", "-0.001", "nan", "inf", "", "1 s", "1_0", "\u0661", "infinity"), "not a time above 0 s"),
+        (share, ("-0.001", "1.001", "nan"), "not a number from 0 to 1"),
         (megabytes, ("1e303", "0", "inf"), "not a size above 0 MB"),
     ],
 )
