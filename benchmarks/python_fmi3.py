@@ -75,11 +75,13 @@ def called(make: Callable[..., Any], calls: int, function: str) -> int:
 def row(title: str, path: Path) -> str:
     """How many of the functions of an FMU end the process in every mode."""
     description = fmpy.read_model_description(str(path), validate=False)
-    given = {"guid": description.guid, "unzipDirectory": fmpy.extract(str(path)), "instanceName": "called"}
+    given = {"guid": description.guid, "instanceName": "called"}
     given["modelIdentifier"] = getattr(description.coSimulation, "modelIdentifier", "")
-    ended = [
-        name for name in FUNCTIONS if all(called(partial(make, **given), calls, name) < 0 for make, calls in MODES)
-    ]
+    with TemporaryDirectory() as files:
+        given["unzipDirectory"] = fmpy.extract(str(path), files)
+        ended = [
+            name for name in FUNCTIONS if all(called(partial(make, **given), calls, name) < 0 for make, calls in MODES)
+        ]
     return f"{title}: {len(ended)} of {len(FUNCTIONS)} functions end the process {' '.join(ended)}"
 
 
@@ -87,9 +89,9 @@ def main() -> None:
     from pythonfmu3.builder import FmuBuilder  # pyright: ignore[reportMissingImports]
 
     with TemporaryDirectory() as folder:
-        script = Path(folder, "relay.py")
-        script.write_text(BLOCK, encoding="utf-8")
-        print(row(f"PythonFMU3 {version('pythonfmu3')}", FmuBuilder.build_FMU(script, dest=folder)))
+        source = Path(folder, "relay.py")
+        source.write_text(BLOCK, encoding="utf-8")
+        print(row(f"PythonFMU3 {version('pythonfmu3')}", FmuBuilder.build_FMU(source, dest=folder)))
     if (native := BUILD / "fmi3" / f"{PLANTS[0]}.fmu").is_file():
         print(row("our native build", native))
 

@@ -88,8 +88,11 @@ def _run(before: Mapping[str, Any], folder: Path, name: str) -> int:
 
 
 def _elsewhere(given: Any, folder: Path, name: str) -> dict[str, Any]:
-    """Changes of the arguments of a command, whose record has that name, for which it writes into a folder and prints
-    nothing."""
+    """What to change in the arguments of a command so that it writes into the folder and prints nothing.
+
+    Args:
+        name: of the record of the command.
+    """
     defaults = {each.name: each.default for each in fields(given)}
     is_file = defaults["output"] is None  # beside which the record is
     file = given.output or getattr(given, "usual_output", Path(f"{name}.toml"))

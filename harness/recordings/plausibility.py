@@ -36,7 +36,7 @@ OWN = Threshold(
     0.3, "1", "its correlation with what the motor gives", "0.92 and more in the recorded trips; 0.3 on a road of 14 %"
 )
 FOLLOWED = Threshold(
-    0.3, "m/s", "speed error, rms, of a drive that is followed", "0.16 m/s at most in 200 simulated drives"
+    0.3, "m/s", "speed error, rms, of a drive that is followed", "0.56 km/h at most in 200 simulated drives"
 )
 
 KMH, MS, WEAK = 3.6, 1e-3, (4.0, 16.0, 64.0, 256.0, 1000.0)
@@ -89,7 +89,7 @@ FOLLOWING = Rule(
     "following",
     "after the drive: a recorded speed that the simulated car does not keep",
     f"{KMH * FOLLOWED:.2g} km/h rms without damping",
-    "the force along the road is corrected until 0.36 km/h are reached; 0.56 km/h at most in 200 simulated drives",
+    f"the force along the road is corrected until 0.36 km/h are reached; {FOLLOWED.source}",
 )
 
 RULES = (*CHANNEL_RULES, RATE, CAPPED, SIGN, RATIO, OTHER, FAST, SLOW_TIME, FOLLOWING)

@@ -164,7 +164,7 @@ class FaultRunner:
         inputs = dict(signals(manoeuvre, control))
         for fault in faults:
             if fault.kind.number == SWITCHED_OFF:
-                inputs = {**inputs, "controller.enable": partial(np.less_equal, fault.end)}
+                inputs["controller.enable"] = partial(np.less_equal, fault.end)
         given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
         system = with_faults(loop(settings), self._injector)
         return _completed(at_samples(run(system, Experiment(manoeuvre.duration, **given))))

@@ -2,8 +2,8 @@
 
 A judge sees the evidence of one case and gives a number; the case is clean if none is above its limit. The times and
 shares behind the limits are those of the requirements: a wrong signal is noticed within 50 ms, everything is as before
-within 0.5 s, and the drive train never swings 1.2 times as much as without control. Torques are taken as if the motor
-were that of the default car, as the demands are.
+within 0.5 s, and the drive train never swings 1.2 times as much as without control. The limits on torques are for the
+default car; those of another car are multiplied by 180 N.m/T_max before they are judged.
 """
 
 from collections.abc import Callable
@@ -39,8 +39,8 @@ NEAR = 0.05
 LEAST_RMS, LEAST_SWING = 1.0, 5.0
 """What the gear torque may always swing, N.m: rms and amplitude."""
 
-OF_DEFAULT = f" (over T_max/{T_MAX:g} N.m)"
-"""Said of torques that are taken as of the motor of the default car."""
+OF_DEFAULT = f" (times {T_MAX:g} N.m/T_max)"
+"""Said of torques that are judged as those of the default car."""
 
 
 @dataclass(frozen=True)
