@@ -2,7 +2,8 @@
 
 What differs is named: the version of a package, the commit, the digest of an input or of an FMU, and of each file the
 first number that is another one. Every command that makes runs writes such a record.
-Figures and pages are not compared. The exit code is 1 if a number is another one.
+Figures and pages are compared only with what was written at first. The exit code is 1 if a number is another one, or a
+file is gone or was changed.
 
 examples:
   driveline again results/compare/compare.json
@@ -11,7 +12,7 @@ examples:
 
 import io
 import shlex
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import chdir, redirect_stdout
 from dataclasses import fields, replace
 from pathlib import Path
@@ -25,6 +26,9 @@ from .arguments import filled, positional, record
 from .options import Replacing
 from .printing import Printing
 
+PLACED = ("report", "output")
+"""Options that may name a file of a result, which need not be beside its record."""
+
 
 @record
 class Arguments(Printing):
@@ -33,12 +37,14 @@ class Arguments(Printing):
 
 def run(args: Arguments) -> int:
     from ..simulation.provenance import BEGINS_ANEW
-    from .same_results import different_numbers, different_origin, numeric, read_record
+    from .same_results import different_files, different_origin, further_cases, numeric, read_record
 
-    before, there = read_record(args.made), args.made.absolute()
+    before, there = read_record(args.made), args.made.absolute().parent
+    command, given = _command(before, args.made.stem)
+    apart = [Path(before["folder"]) / place for name in PLACED if (place := getattr(given, name, None))]
     with TemporaryDirectory(prefix="driveline-", ignore_cleanup_errors=True) as folder:
         try:
-            code = _run(before, Path(folder), args.made.stem)
+            code = _run(command, given, before["folder"], Path(folder), args.made.stem)
         except KeyboardInterrupt as stop:
             stop.__notes__ = [BEGINS_ANEW]  # a campaign says that it goes on, but its folder vanishes
             raise
@@ -50,19 +56,22 @@ def run(args: Arguments) -> int:
         now = read_record(found)
         for difference in different_origin(before, now):
             print(f"made differently: {plain(difference)}")
-        numbers = list(different_numbers(before, there.parent, now, found.parent))
-    for difference in numbers:
-        print(f"other numbers: {plain(difference)}")
-    if not numbers:
+        different = list(different_files(before, there, now, found.parent, apart))
+        further = list(further_cases(before, there, found.parent))
+    for difference in different:
+        print(f"other numbers: {plain(difference)}" if ": " in difference else plain(difference))
+    for line in further:
+        args.say(plain(line))
+    if not different:
         args.say(f"the same, to the last bit: {', '.join(numeric(before)) or 'no file has numbers'}")
-    return int(bool(numbers))
+    return int(bool(different))
 
 
-def _run(before: Mapping[str, Any], folder: Path, name: str) -> int:
-    """Runs the command of a record where it ran, with its results in a folder, and the record of that name.
+def _command(before: Mapping[str, Any], name: str) -> tuple[Callable[[Any], int], Any]:
+    """What the command of a record runs, and its arguments.
 
     Raises:
-        DrivelineError: it is no command of ours, or cannot be run there.
+        DrivelineError: it is no command of ours, or cannot be run where it ran.
     """
     from .cli import parser
 
@@ -82,9 +91,15 @@ def _run(before: Mapping[str, Any], folder: Path, name: str) -> int:
             if stop.code:  # it has been said what is wrong
                 raise
             given = None  # it asks for help
-        if not isinstance(given, Replacing):  # others build, serve, or run what is no FMU
-            raise DrivelineError(f"the command of {name}.json makes no result of runs: {plain(command_line)}")
-        return parsed.found.run(replace(given, **_elsewhere(given, folder, name)))
+    if not isinstance(given, Replacing):  # others build, serve, or run what is no FMU
+        raise DrivelineError(f"the command of {name}.json makes no result of runs: {plain(command_line)}")
+    return parsed.found.run, given
+
+
+def _run(command: Callable[[Any], int], given: Any, cwd: str, folder: Path, name: str) -> int:
+    """Runs a command where it ran, with its results in a folder, and the record of that name."""
+    with chdir(cwd), redirect_stdout(io.StringIO()):
+        return command(replace(given, **_elsewhere(given, folder, name)))
 
 
 def _elsewhere(given: Any, folder: Path, name: str) -> dict[str, Any]:

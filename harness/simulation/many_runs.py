@@ -50,8 +50,9 @@ def run_many(
     """What a function gives for each of the cases, in their order.
 
     A system of FMUs that the function runs stays loaded for the next case. A case whose process was lost is run once
-    more. Of 32 cases and more (MANY), runs of the same native FMUs of the project are made side by side in the lanes of
-    the processor. They differ from single runs by the rounding of single operations.
+    more. Of 32 cases and more (MANY), and wherever answers are `known`, which must not depend on how many are asked for
+    at once, runs of the same native FMUs of the project are made side by side in the lanes of the processor. They
+    differ from single runs by the rounding of single operations.
 
     Args:
         workers: processes that share the cases; with 1 it is this process. None: one a core.
@@ -70,7 +71,7 @@ def run_many(
     todo = every if known is None else [case for case in dict.fromkeys(every) if case not in known]
     count = min(workers or _cores(), max(len(todo), 1))
     _require_batch(batch)
-    if in_lanes := _goes_in_lanes(len(every)):
+    if in_lanes := _goes_in_lanes(len(every) if known is None else MANY):
         batch = max(batch, min(MANY, -(-len(todo) // count)))
     with _many(function, count, executor, batch, in_lanes) as answered, progress(len(every), label) as done:
         done(len(every) - len(todo))

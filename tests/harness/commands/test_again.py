@@ -12,6 +12,7 @@ import pytest
 from driveline.harness.base.digest import digest
 from driveline.harness.commands import again
 from driveline.harness.commands.cli import main
+from driveline.harness.commands.same_results import different_files, further_cases
 from driveline.harness.simulation.case_archive import GOES_ON
 from tests.harness.commands import Capsys
 
@@ -105,10 +106,13 @@ def test_a_number_that_is_another_one_is_named(made: Path, tmp_path: Path, capsy
         (lambda record: record.pop("versions"), "is no record of a result, or one of an earlier version"),
         (lambda record: record.update(files=["x.csv"]), "is no record of a result, or one of an earlier version"),
         (lambda record: record.update(folder=7), "is no record of a result, or one of an earlier version"),
-        (lambda record: record.update(command_line=5), "is no record of a result: AttributeError$"),
+        (lambda record: record.update(command_line=5), "is no record of a result, or one of an earlier version"),
         (lambda record: record.update(command_line=""), "is no record of a result, or one of an earlier version"),
-        (lambda record: record.update(command_line="driveline 'x"), "is no record of a result: ValueError$"),
-        (lambda record: record.update(fmus=["x"]), "is no record of a result: AttributeError$"),
+        (
+            lambda record: record.update(command_line="driveline 'x"),
+            "is no record of a result, or one of an earlier version",
+        ),
+        (lambda record: record.update(fmus=["x"]), "is no record of a result, or one of an earlier version"),
         (lambda record: record.update(command_line="driveline --help"), "makes no result of runs: driveline --help$"),
         (lambda record: record.update(command_line="python mine.py"), "made by another program, .*: python mine.py$"),
         (
@@ -125,6 +129,59 @@ def test_what_cannot_be_made_again_is_refused(
     assert (code, out) == (2, "")
     (line,) = err.splitlines()
     assert re.search(named, line)
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ("", "{0} is a folder; did you mean {0}/NAME.json?"),
+        ("NAME.jsn", "there is no file {0}/NAME.jsn; did you mean {0}/NAME.json?"),
+        ("NAME.csv", "{0}/NAME.csv is no record of a result: it is not JSON"),
+    ],
+)
+def test_what_is_no_record_is_refused(made: Path, capsys: Capsys, given: str, expected: str) -> None:
+    path = made / "results" / given.replace("NAME", NAME)
+    told = expected.format(made / "results").replace("NAME", NAME)
+    assert answer(capsys, "again", str(path)) == (2, "", f"driveline again: {told}\n")
+
+
+def test_what_was_deleted_or_changed_is_named(made: Path, tmp_path: Path, capsys: Capsys) -> None:
+    (empty := tmp_path / "empty").touch()
+    record = with_record(made, tmp_path, lambda r: r["files"].update({"a.png": "sha256:0", "b.png": digest(empty)}))
+    for name in ("a.png", "b.png"):
+        (record.parent / name).touch()
+    record.with_suffix(".csv").unlink()
+    told = f"{NAME}.csv is gone\na.png was changed after it was written\n"
+    assert answer(capsys, "again", str(record)) == (1, told, "")
+
+
+CASES = [f"{plant},Ours,{k},tipin15,0.{k}" for plant in "ab" for k in range(4)]
+
+
+@pytest.mark.parametrize(
+    ("made_again", "different", "more"),
+    [
+        (CASES, [], []),
+        ([CASES[1], CASES[5]], [], ["runs.csv: 6 cases beside those of its command are not compared"]),
+        ([CASES[1], f"{CASES[5]}1"], ["runs.csv: line 7, kick: 0.1 there, 0.11 here"], None),
+        ([CASES[1], "c,Ours,1,tipin15,0.1"], ["runs.csv: the case c, Ours, 1, tipin15 is not in it"], None),
+    ],
+)
+def test_of_a_campaign_the_cases_of_its_command_are_compared(
+    tmp_path: Path, made_again: list[str], different: list[str], more: list[str] | None
+) -> None:
+    records: list[dict[str, Any]] = []
+    for folder, rows in (("there", CASES), ("here", made_again)):
+        path = tmp_path / folder / "runs.csv"
+        path.parent.mkdir()
+        path.write_text("\n".join(["plant,controller,number,manoeuvre,kick", *rows]) + "\n")
+        records.append({"run": {"code": "1"}, "files": {path.name: digest(path)}})
+    there, here = tmp_path / "there", tmp_path / "here"
+    assert list(different_files(records[0], there, records[1], here)) == different
+    assert more is None or list(further_cases(records[0], there, here)) == more
+    if more:  # what is no campaign has all its rows
+        del records[0]["run"]["code"]
+        assert list(different_files(records[0], there, records[1], here)) != []
 
 
 def test_one_that_is_stopped_begins_anew(made: Path, capsys: Capsys, monkeypatch: pytest.MonkeyPatch) -> None:

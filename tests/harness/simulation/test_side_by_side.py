@@ -92,6 +92,9 @@ def test_libraries_with_other_constants_in_the_cache_are_made_again(both_built, 
 def test_few_cases_and_other_blocks_go_alone(both_built, built, lanes, in_lanes):
     run_many(swing(both_built), [("TwoMassDriveline", k) for k in range(3)], workers=1)
     assert in_lanes == []
+    run_many(swing(both_built), [("TwoMassDriveline", 0)], workers=1, known={})  # a campaign may go on with more
+    assert len(in_lanes) == 2
+    in_lanes.clear()
     run_many(swing(built), [("TwoMassDriveline", k) for k in range(4)], workers=1)
     assert in_lanes == []
 
