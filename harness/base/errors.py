@@ -29,6 +29,10 @@ class SimulationError(DrivelineError):
     exit_code = 1
 
 
+class RunEnded(SimulationError):
+    """An FMU asked for the end of a run before there was enough of it."""
+
+
 class UnpackingError(SimulationError):
     """An FMU cannot be unpacked or loaded on this machine: nothing is said of how it would run elsewhere."""
 

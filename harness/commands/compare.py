@@ -30,7 +30,7 @@ from .printing import JsonPrinting
 from .settings import all_settings, caption, dampings
 
 if TYPE_CHECKING:
-    from ..studies.compare.compare import Case
+    from ..studies.compare.compare import Outcome
 
 IN_HELP = {"metrics": legend(Metrics), "compared": ", ".join(COMPARED)}
 
@@ -71,10 +71,13 @@ def run(args: Arguments) -> int:
         require_possible(*requested, made.fits, systems)
         made.begin(*signals.values(), *(path.with_suffix(".json") for path in signals.values()))
         outcomes, figures = run_cases(list(signals), args.output, loops, manoeuvres, args.format, options)
+        made.found({str(outcome.case): outcome.results for outcome in outcomes})
         title, rows = dampings(names), rows_of(outcomes)
         made.wrote(*write_tables(outcomes, args.output, title), *figures)
-        for case, path in signals.items():
-            _record(made, case, path, loops[case.plant, case.controller], manoeuvres[case.manoeuvre], read)
+        for outcome, path in zip(outcomes, signals.values(), strict=True):
+            case = outcome.case
+            one = loops[case.plant, case.controller], manoeuvres[case.manoeuvre]
+            _record(made, outcome, path, *one, read)
         for provenance, path in made.reports():
             report(outcomes, manoeuvres, provenance, path)
         builds = {made.plant_name: made.build for made in given.values()}
@@ -87,11 +90,12 @@ def run(args: Arguments) -> int:
 
 
 def _record(
-    made: RunJob, case: "Case", signals: Path, settings: Settings, manoeuvre: Manoeuvre, read: Sequence[Path]
+    made: RunJob, outcome: "Outcome", signals: Path, settings: Settings, manoeuvre: Manoeuvre, read: Sequence[Path]
 ) -> None:
     """Writes what made the signals of a run beside them."""
     from ..simulation.provenance import write_record
 
+    case, found = outcome.case, outcome.results.remarks
     one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"}
     fits = {case.plant: made.fits[f"{case.plant} with {settings.controller_name}"]}
-    write_record(signals.with_suffix(".json"), one | distinguishing(settings, manoeuvre), fits, [signals], read)
+    write_record(signals.with_suffix(".json"), one | distinguishing(settings, manoeuvre), fits, [signals], read, found)

@@ -11,6 +11,7 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from .printing import Printing
 
 if TYPE_CHECKING:
+    from ..cosimulation.results import Results
     from ..cosimulation.system import System
     from ..cosimulation.wiring import Fit
     from ..simulation.case_archive import Campaign, CaseArchive, Table
@@ -61,6 +62,11 @@ class Job(Generic[M]):
 class RunJob(Job["Made"]):
     """A job whose runs are all made anew."""
 
+    def found(self, runs: "Mapping[str, Results]") -> None:
+        """The record tells what is to be remarked of runs, by their names."""
+        if remarks := {name: run.remarks for name, run in runs.items() if run.remarks}:
+            self._made.found["remarks"] = remarks
+
     def begin(self, *others: Path) -> None:
         """See `harness.simulation.provenance.Made.begin`."""
         self._made.begin(*others)
@@ -98,7 +104,7 @@ def job(
     reports, inputs, wired = _reports(args), [*read, *_files(args)], _wired(systems)
     one = RunJob(args, reports)
     with recorded(record, run, wired, inputs, [*results, *reports], args.replace) as made:
-        one.start(made, lambda: content(run, made.fits, [], inputs))
+        one.start(made, lambda: content(run, made.fits, [], inputs, made.found))
         yield one
     one.end(record)
 

@@ -102,6 +102,7 @@ def drive(
     """
     from ..studies.drives.replay import replay, write
     from ..studies.drives.verdict import followed_speed, tell
+    from ..views.terminal import rides_reasons
 
     options = args.options(caption(args), (recording.name, 0.0, float(track.t[-1])))
     same = {**same, "controllers": list(given)} | {f"with {n}": distinguishing(each) for n, each in given.items()}
@@ -115,8 +116,10 @@ def drive(
         tell(unkept, args.recording, args.strict)
         odd = [*odd, *unkept]
         made.begin()
+        made.found({ride.controller: ride.signals for ride in rides})
         notes = [f"not plausible: {finding}" for finding in odd]
-        made.wrote(*write(rides, track, plant, args.output, options, args.format, recording.file_units, notes))
+        below = [*rides_reasons({ride.controller: ride.metrics for ride in rides}), *notes]
+        made.wrote(*write(rides, track, plant, args.output, options, args.format, recording.file_units, below))
         _tell(made, rides, track, plant, odd, notes)
 
 

@@ -66,6 +66,7 @@ def run(args: Arguments) -> int:
         args.say(f"{manoeuvre.name} on {given.plant_name}, {given.build} FMUs, damping {args.control}")
         results = simulate(manoeuvre, given)
         made.begin()
+        made.found({given.plant_name: results})
         made.wrote(write_signals(results, stem, args.format))
         if args.frames:
             made.wrote(*write_frames(fitted, given, results, stem, args.frames))

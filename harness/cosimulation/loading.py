@@ -20,7 +20,7 @@ from .experiment import Experiment
 from .instance import label
 from .isolated_process import IsolatedProcess
 from .master import KEPT, Loop, opened
-from .results import Results
+from .results import Ended, Results
 from .row_layout import Layout
 from .schedule import described, transfers
 from .steps import MakeSteps, interpreted
@@ -57,14 +57,18 @@ class IsolatedLoop:
         with progress(len(time) - 1, experiment.label) as done:
             rows = self._isolated.fetch(size, _run, sent, watch=lambda now: done(round(now / experiment.step_size)))
         results = Results(np.frombuffer(rows, layout.recorded), layout.units)
-        ended = self._isolated.ask(_ended)
+        ended, steps = self._isolated.ask(_ended), self._isolated.ask(_own_steps)
+        results.own_steps = dict(zip(steps[::2], map(float, steps[1::2]), strict=True))
+        if ended:
+            results = results[: int(ended[0])]
+            results.ended = Ended(ended[1], float(results["time"][-1]))
         try:
             remarks = self._isolated.ask(_finish)
         except SimulationError as error:
             remarks = [f"{error}; {KEPT}"]
         for text in remarks:
             LOG.warning(text)
-        return results[: int(ended[0])] if ended else results
+        return results
 
 
 @contextmanager
@@ -132,17 +136,27 @@ def _reset() -> None:
     _loop.reset()
 
 
+_rows = 0
+
+
 def _run(experiment: Experiment) -> memoryview:
     """All rows, of zeros behind the end."""
+    global _rows
     results = _loop.rows(experiment)
+    _rows = len(results)
     rows = results.view(np.uint8)
     lacking = (len(experiment.time()) - len(results)) * results.itemsize
     return (np.concatenate([rows, np.zeros(lacking, np.uint8)]) if lacking else rows).data
 
 
 def _ended() -> list[str]:
-    """How many rows there are, where an FMU has ended the run."""
-    return [] if _loop.ended is None else [str(_loop.ended)]
+    """How many rows there are, and by which FMU, where one has ended the run."""
+    return [] if _loop.ended is None else [str(_rows), _loop.ended.instance]
+
+
+def _own_steps() -> list[str]:
+    """FMUs and their steps in s, by turns."""
+    return [text for name, own in _loop.own_steps().items() for text in (name, repr(own))]
 
 
 def _finish() -> list[str]:

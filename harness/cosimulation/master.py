@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 from fmpy.fmi2 import fmi2Discard, fmi2Error, fmi2OK, fmi2Warning
 
-from ..base.errors import SimulationError, WiringError
+from ..base.errors import RunEnded, SimulationError, WiringError
 from ..base.progress import chunks, progress
 from .bound_calls import Wires, wired
 from .calls import Call
 from .experiment import Experiment
 from .instance import FMU2Traced, FMU3Traced, Instance, instantiated
 from .parameter_changes import Change, changes, initial
-from .results import Results
+from .results import Ended, Results
 from .steps import NOT_FINITE, MakeSteps, Refusal, made
 from .system import Scheme
 from .unpacked_fmu import unpacked
@@ -59,7 +59,7 @@ class Loop:
     Attributes:
         fitted: what they are.
         instances: they, in the order in which they step.
-        ended: where an FMU has ended the last run, so many rows there are.
+        ended: which FMU has ended the last run and when; None: none.
         remarks: what is to be said of the last run.
     """
 
@@ -71,7 +71,7 @@ class Loop:
         self._wires: dict[Any, Wires] = {}
         self._is_new = True
         self._own_steps: dict[str, float] = {}
-        self.ended: int | None = None
+        self.ended: Ended | None = None
         self.remarks: list[str] = []
 
     def reset(self) -> None:
@@ -92,11 +92,11 @@ class Loop:
             Structured array with the rows of the instants k * step_size, k = 0, 1, ..., and the columns
             `time`, each input (held from that instant on) and each output `instance.variable`: under the
             propagated scheme that of the instant with the inputs of the instant, else as the FMU gives it
-            at the end of the step. Where an FMU asks for the end of the run, which is said, the rows so far.
+            at the end of the step. Where an FMU asks for the end of the run, the rows so far; see `Results.ended`.
 
         Raises:
             WiringError: inputs or parameters do not fit the FMUs, or the scheme does not suit them.
-            SimulationError: an FMU refused a call.
+            SimulationError: an FMU refused a call, or ended the run in its first step.
         """
         results = self.rows(experiment)
         for text in self.finish():
@@ -111,15 +111,32 @@ class Loop:
             wires, table, due = self.begin(experiment)
             refusal = self._steps(experiment, wires, table, due)
             if refusal is None:
-                return wires.layout.results(table)
-            if _has_ended(refusal):
-                self.ended = refusal.step + 1
-                self.remarks.append(f"{refusal.call.instance.label} has ended the run at {time[refusal.step]:g} s")
-                return wires.layout.results(table[: self.ended])
+                return self._made(wires.layout.results(table))
+            instance, ends = refusal.call.instance, _has_ended(refusal)
             begun = refusal.status == NOT_FINITE
             failure = _failure(refusal.call, refusal.status, float(time[refusal.step if begun else refusal.instant]))
-            if not self._takes_longer_steps(refusal, experiment.step_size):
-                raise failure
+            if self._takes_longer_steps(refusal, experiment.step_size):
+                continue
+            unfit = _unfit(refusal, experiment.step_size)
+            if not ends:
+                raise type(failure)(f"{failure}{unfit}")
+            if refusal.step < self._multiples().get(instance.name, 1):
+                label = instance.label
+                raise RunEnded(f"{label} ended the run in its first step: there is nothing to evaluate{unfit}")
+            self.ended = Ended(instance.label, float(time[refusal.step]))
+            return self._made(wires.layout.results(table[: refusal.step + 1]))
+
+    def _made(self, results: Results) -> Results:
+        results.ended, results.own_steps = self.ended, self.own_steps()
+        return results
+
+    def own_steps(self) -> dict[str, float]:
+        """In s, of the FMUs that make others than the loop."""
+        return {name: self._own_steps[name] for name, number in self._multiples().items() if number > 1}
+
+    def _multiples(self) -> dict[str, int]:
+        """How many steps of the loop one step of those FMUs takes."""
+        return {name: _multiple(own, self._step_size.value) or 1 for name, own in self._own_steps.items()}
 
     def finish(self) -> list[str]:
         """Tells the FMUs that the run is over; what is to be said of it, also of one that refuses that."""
@@ -224,7 +241,7 @@ class Loop:
         Raises:
             WiringError: the scheme does not suit the system.
         """
-        every = {name: _multiple(own, self._step_size.value) for name, own in self._own_steps.items()}
+        every = self._multiples()
         key = scheme, inputs, *every.items()
         if key not in self._wires:
             fixed = self._step_size, self._make_steps
@@ -303,6 +320,16 @@ def _multiple(own: float, step_size: float) -> int:
     """How many steps of the loop make one; 0 if no whole number does."""
     number = round(own / step_size)
     return number if abs(own - number * step_size) <= 1e-9 * own else 0
+
+
+def _unfit(refusal: Refusal, step_size: float) -> str:
+    """Why an FMU that refuses the first step cannot make its own, if it has one; nothing, or a part of a sentence."""
+    instance, own = refusal.call.instance, _own_step(refusal.call.instance)
+    if instance.own or refusal.step > 0 or not refusal.call.function.endswith("DoStep") or not own:
+        return ""
+    return (
+        "" if _multiple(own, step_size) else f"; its own step of {own:g} s is no multiple of the loop's {step_size:g} s"
+    )
 
 
 def _check(call: Call, status: int) -> None:

@@ -10,12 +10,20 @@ from struct import Struct
 from typing import Any, BinaryIO, NamedTuple
 
 from ...fmus.file_limits import LARGEST_ANSWER
-from ..base.errors import DrivelineError, InstantiationError, SimulationError, UnpackingError, WiringError
+from ..base.errors import DrivelineError, InstantiationError, RunEnded, SimulationError, UnpackingError, WiringError
 from ..base.plain_text import plain
 
 ERRORS: dict[str, type[Exception]] = {
     error.__name__: error
-    for error in (DrivelineError, WiringError, SimulationError, UnpackingError, InstantiationError, MemoryError)
+    for error in (
+        DrivelineError,
+        WiringError,
+        SimulationError,
+        UnpackingError,
+        InstantiationError,
+        RunEnded,
+        MemoryError,
+    )
 }
 """What may be raised here as it was raised there; everything else becomes a SimulationError."""
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Self
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -12,6 +13,16 @@ from .row_file import RESIDENT, RowFile
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+
+class Ended(NamedTuple):
+    """Which FMU asked for the end of a run, and when in s: the instant of the last row."""
+
+    instance: str
+    time: float
+
+    def __str__(self) -> str:
+        return f"{self.instance} ended the run at {self.time:g} s"
 
 
 class Results(np.ndarray):
@@ -23,12 +34,16 @@ class Results(np.ndarray):
     Attributes:
         units: by column; what has none is not in it.
         frequency: at which the drive train swings, Hz; None: it is not known.
+        ended: by which FMU and when the run was ended before its time; None: by none.
+        own_steps: in s, of the FMUs by their instances that refused those of the loop.
         file: in which the rows are; None: in memory.
     """
 
     units: Mapping[str, str]
     file: RowFile | None
     frequency: float | None = None
+    ended: Ended | None = None
+    own_steps: Mapping[str, float] = MappingProxyType({})
 
     def __new__(cls, table: np.ndarray, units: Mapping[str, str], file: RowFile | None = None) -> Self:
         made = table.view(cls)
@@ -39,6 +54,14 @@ class Results(np.ndarray):
         self.units = getattr(source, "units", {})
         self.file = getattr(source, "file", None)
         self.frequency = getattr(source, "frequency", None)
+        self.ended = getattr(source, "ended", None)
+        self.own_steps = getattr(source, "own_steps", Results.own_steps)
+
+    @property
+    def remarks(self) -> dict[str, Any]:
+        """What a record tells of the run: who ended it when, and the steps of FMUs that make others than the loop."""
+        ended = {"ended": self.ended._asdict()} if self.ended else {}
+        return ended | ({"own_steps": dict(self.own_steps)} if self.own_steps else {})
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, str) and key not in (names := self.dtype.names or ()):
@@ -69,10 +92,10 @@ class Results(np.ndarray):
 
     def __reduce__(self) -> Any:
         make, arguments, state = super().__reduce__()  # type: ignore[misc]
-        return make, arguments, (state, self.units, self.frequency)
+        return make, arguments, (state, self.units, self.frequency, self.ended, dict(self.own_steps))
 
     def __setstate__(self, state: Any) -> None:
-        own, self.units, self.frequency = state
+        own, self.units, self.frequency, self.ended, self.own_steps = state
         super().__setstate__(own)
 
     def plot(self, names: Iterable[str] = (), **how: Any) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..base.argument_kinds import A_MANOEUVRE, require_kind
+from ..cosimulation.results import Ended
 from ..loop.places import T_S
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured
@@ -47,7 +48,8 @@ Rows = np.ndarray | Mapping[str, np.ndarray]
 
 
 def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Metrics:
-    """The metrics of one run. One that makes no sense for it is NaN, and `absent` has the reason.
+    """The metrics of one run. One that makes no sense for it is NaN, and `absent` has the reason; of a run that an FMU
+    has ended before its time all are.
 
     Args:
         results: structured array of a run of `manoeuvre` with the COLUMNS, at equal intervals of which T_s is a
@@ -60,7 +62,8 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
     """
     require_kind("results", results, np.ndarray, "results of a run, as simulate gives them")
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
-    every, t_0, band = _stride(results, T_s), manoeuvre.t_0, own_band(getattr(results, "frequency", None))
+    t_0, band, ended = manoeuvre.t_0, own_band(getattr(results, "frequency", None)), end_of(results)
+    every = 1 if ended else _stride(results, T_s)
     rows, sampled, kept = results, results[::every], _anew
     if getattr(results, "file", None) is None:  # else columns are read when needed: all would not fit in memory
         rows = {name: np.ascontiguousarray(results[name]) for name in COLUMNS}
@@ -122,7 +125,13 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         "end_swing": lambda: float(swing()[-round(1.0 / T_s) :].max()),
         "plateau_swing": lambda: plateau_swing(t(), T_gear(), manoeuvre.plateau_ends),
     }
-    return Metrics(**measured(computed, none_because=not_finite(rows)))
+    return Metrics(**measured(computed, none_because=ended or not_finite(rows)))
+
+
+def end_of(results: np.ndarray) -> str | None:
+    """When an FMU has ended a run before its time; None if none has."""
+    ended: Ended | None = getattr(results, "ended", None)
+    return f"the run ended at {ended.time:g} s" if ended else None
 
 
 def not_finite(results: Rows) -> str | None:
@@ -160,12 +169,14 @@ def at_samples(results: np.ndarray, T_s: float = T_S) -> np.ndarray:
     """The rows of a run at 0, T_s, 2 T_s, ...
 
     Raises:
-        ValueError: T_s is not a multiple of the interval of the results.
+        ValueError: T_s is not a multiple of the interval of the results, or there is one row alone.
     """
     return results[:: _stride(results, T_s)]
 
 
 def _stride(results: np.ndarray, T_s: float) -> int:
+    if len(results) < 2:
+        raise ValueError("the results have fewer than two rows: there is nothing to evaluate")
     interval = float(np.diff(results[:2]["time"])[0])
     stride = round(T_s / interval)
     if stride < 1 or abs(stride * interval - T_s) > 1e-6 * T_s:

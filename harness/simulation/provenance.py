@@ -8,6 +8,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from ...fmus.child_process import output_of
@@ -31,6 +32,7 @@ class Made:
     Attributes:
         files: that it has written.
         begun: whether files are being replaced.
+        found: what the record tells of the runs beside.
     """
 
     def __init__(
@@ -41,6 +43,7 @@ class Made:
         kept: what lasts until the record is written.
         """
         self.files: list[Path] = []
+        self.found: dict[str, Any] = {}
         self._record = record
         self._systems = systems
         self._require = require
@@ -115,7 +118,7 @@ def recorded(
         try:
             with as_before_if_stopped():
                 yield made
-                write_record(record, run, made.fits, made.files, inputs)
+                write_record(record, run, made.fits, made.files, inputs, made.found)
         except BaseException as stop:
             made.remove_empty_folders()
             if isinstance(stop, KeyboardInterrupt):
@@ -187,14 +190,23 @@ def differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
 
 
 def write_record(
-    record: Path, run: Mapping[str, Any], fits: Mapping[str, Fit], files: Sequence[Path], inputs: Sequence[Path | None]
+    record: Path,
+    run: Mapping[str, Any],
+    fits: Mapping[str, Fit],
+    files: Sequence[Path],
+    inputs: Sequence[Path | None],
+    found: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
     """Writes what made the files of a run; the arguments are those of `content`."""
-    write_text(_text(content(run, fits, files, inputs)), record)
+    write_text(_text(content(run, fits, files, inputs, found)), record)
 
 
 def content(
-    run: Mapping[str, Any], fits: Mapping[str, Fit], files: Sequence[Path], inputs: Sequence[Path | None]
+    run: Mapping[str, Any],
+    fits: Mapping[str, Fit],
+    files: Sequence[Path],
+    inputs: Sequence[Path | None],
+    found: Mapping[str, Any] = MappingProxyType({}),
 ) -> dict[str, Any]:
     """What made the files of a run.
 
@@ -203,6 +215,7 @@ def content(
         fits: the systems that ran, by their names.
         files: that it has written.
         inputs: files beside the FMUs that it has read.
+        found: what else is to be told of it.
     """
     return {
         "program": f"driveline-damping {version('driveline-damping')}",
@@ -211,6 +224,7 @@ def content(
         "folder": str(Path.cwd()),
         "versions": versions(),
         "run": run,
+        **found,
         "fmus": {
             system: {name: {"file": path, "digest": digest(path)} for name, path in fit.system.instances.items()}
             for system, fit in fits.items()

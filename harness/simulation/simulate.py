@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.argument_kinds import A_MANOEUVRE, require_kind
 from ..base.collected_warnings import warn_once
-from ..base.errors import SimulationError, WiringError
+from ..base.errors import RunEnded, SimulationError, WiringError
 from ..cosimulation.experiment import Experiment, Source, require_steps
 from ..cosimulation.results import Results
 from ..cosimulation.runs import run
@@ -27,6 +27,9 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal
 
 LOG = logging.getLogger(__name__)
+
+SHORTEST = 0.2
+"""s that a run must have lasted that an FMU has ended: a swing is the peak to peak within so long."""
 
 
 def simulate(
@@ -47,12 +50,14 @@ def simulate(
 
     Returns:
         Structured array with the units of its columns: a row for each instant k * step_size, k = 0, 1, ..., with
-        `time`, each input (held from that instant on) and each output `instance.variable`.
+        `time`, each input (held from that instant on) and each output `instance.variable`. If an FMU ended the run,
+        `ended` tells which and when, and the rows are those up to then.
 
     Raises:
         WiringError: a block, a parameter or an argument does not fit.
         MemoryError: the results of so many steps do not fit in memory.
-        SimulationError: an FMU refused a call, or one that was given by its path crashed or hung.
+        SimulationError: an FMU refused a call or ended the run before SHORTEST, or one that was given by its path
+            crashed or hung.
     """
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
     made = running(settings_of(settings, **changes))
@@ -79,6 +84,11 @@ def simulate(
         raise SimulationError(
             f"{refusal}; the wheels spin, as {manoeuvre.name} demands more than the road holds; {easing} ease off"
         ) from None
+    if results.ended:
+        if results.ended.time < SHORTEST - 1e-9:
+            raise RunEnded(f"{results.ended}: there is nothing to evaluate")
+        damping = f"with {made.controller_name}" if made.control else "without damping"
+        warn_once(f"{results.ended} of {manoeuvre.duration:g} s, in {manoeuvre.name} {damping}: it has no metrics")
     told = {name.partition(".")[2]: value for name, value in given.items() if name.startswith("controller.")}
     results.frequency = made.frequency or own_frequency(told)
     return results

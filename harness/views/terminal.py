@@ -11,7 +11,6 @@ from rich.measure import Measurement
 from rich.table import Column, Table
 from rich.text import Text, TextType
 
-from ..metrics.declaration import declared
 from ..metrics.run_metrics import Metrics, RideMetrics
 from .metrics_table import DAMPINGS, RIDES_SHOWN, SHOWN, Row, cells, legend, reasons, ride_rows
 
@@ -127,9 +126,9 @@ def rides_table(rides: Mapping[str, RideMetrics], title: str) -> Table:
 
 def rides_reasons(rides: Mapping[str, RideMetrics]) -> list[str]:
     """Why the table of the rides has dashes."""
-    return [
-        f"- {metric.column.plain_heading} {name}: {ride.absent[metric.name]}"
-        for metric in declared(RideMetrics)
-        for name, ride in rides.items()
-        if metric.column and metric.name in ride.absent
-    ]
+    concerned: dict[tuple[str, ...], list[str]] = {}
+    for metric, column in RIDES_SHOWN:
+        for reason in dict.fromkeys(ride.absent[metric.name] for ride in rides.values() if metric.name in ride.absent):
+            names = (name for name, ride in rides.items() if ride.absent.get(metric.name) == reason)
+            concerned.setdefault((reason, *names), []).append(column.plain_heading)
+    return [f"- {', '.join(columns)}: {reason} ({', '.join(names)})" for (reason, *names), columns in concerned.items()]

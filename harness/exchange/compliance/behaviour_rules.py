@@ -13,7 +13,7 @@ from ...cosimulation import instance
 from ...cosimulation.unpacked_fmu import Unpacked
 from .document import document
 from .event_host import hosted
-from .host import Outputs
+from .host import Host, Outputs
 from .rule import Clause, Rules, Severity
 
 STEPS = 100
@@ -66,11 +66,31 @@ def default_experiment(fmu: Unpacked, most_steps: int = MOST_STEPS) -> Iterator[
         everything = list(fmu.interface.variables.values())
         host.read(everything)
         first = last = host.outputs()
-        for _ in range(round(min(host.stop / host.step_size, most_steps))):
+        for _ in range(_steps(host, most_steps)):
             last = host.advance(host.step_size)
         host.read(everything)
     yield from _not_finite(first, "at the start")
     yield from _not_finite(last, "at the end")
+
+
+def _steps(host: Host, most: int = MOST_STEPS) -> int:
+    """Of the default experiment, as far as it is run."""
+    return round(min(host.stop / host.step_size, most))
+
+
+@BEHAVIOUR_RULES.rule(
+    "end", Severity.NOTE, f"it does not end the default experiment (first {MOST_STEPS} steps)", Clause("4.2.1", "4.2.1")
+)
+def does_not_end(fmu: Unpacked) -> Iterator[str]:
+    """FMI lets an FMU ask for the end, and a host has no more than what was until then."""
+    with suppress(SimulationError), hosted(fmu) as host:  # which the rule `runs` tells
+        host.start()
+        for _ in range(_steps(host)):
+            begins = host.time
+            host.advance(host.step_size)
+            if host.ended:
+                yield f"it ends the default experiment at {begins:g} of {host.stop:g} s"
+                return
 
 
 @BEHAVIOUR_RULES.rule(

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
 from ...base.progress import part, progress
+from ...cosimulation.results import Results
 from ...cosimulation.wiring import fit
 from ...loop.settings import Settings, loop
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -17,7 +18,7 @@ from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
 from ...manoeuvres.speed_following import drive, lacking_force, needed_force
 from ...metrics.damage import damage, require_counting
 from ...metrics.declaration import given, measured
-from ...metrics.evaluate import at_samples, evaluate
+from ...metrics.evaluate import at_samples, end_of, evaluate
 from ...metrics.run_metrics import RideMetrics
 from ...recordings.file_units import FileUnit
 from ...simulation.many_runs import run_many
@@ -63,7 +64,7 @@ class Ride:
 
     controller: str
     metrics: RideMetrics
-    signals: np.ndarray
+    signals: Results
 
     @property
     def control(self) -> bool:
@@ -75,9 +76,10 @@ class Ride:
         return self.controller if self.control else "off"
 
 
-def signals_of(manoeuvre: Manoeuvre, settings: Settings) -> np.ndarray:
+def signals_of(manoeuvre: Manoeuvre, settings: Settings) -> Results:
     """The columns KEPT of a run, at the samples of the controller."""
-    return repack_fields(at_samples(simulate(manoeuvre, settings))[KEPT])
+    kept: Any = repack_fields(at_samples(simulate(manoeuvre, settings))[KEPT])
+    return kept
 
 
 def speed_error(signals: np.ndarray, track: Track) -> float:
@@ -85,7 +87,7 @@ def speed_error(signals: np.ndarray, track: Track) -> float:
     return float(np.sqrt(np.mean((signals["plant.v"] - np.interp(signals["time"], track.t, track.v)) ** 2)))
 
 
-def ride_of(controller: str, signals: np.ndarray, manoeuvre: Manoeuvre, track: Track) -> Ride:
+def ride_of(controller: str, signals: Results, manoeuvre: Manoeuvre, track: Track) -> Ride:
     """What a run of the manoeuvre of a track is worth."""
     metrics = evaluate(signals, manoeuvre)
     computed = {
@@ -94,12 +96,10 @@ def ride_of(controller: str, signals: np.ndarray, manoeuvre: Manoeuvre, track: T
         "jerk_rms": lambda: given(metrics, "jerk_rms"),
         "speed_error_rms": lambda: speed_error(signals, track),
     }
-    return Ride(controller, RideMetrics(**measured(computed)), signals)
+    return Ride(controller, RideMetrics(**measured(computed, none_because=end_of(signals))), signals)
 
 
-def followed(
-    track: Track, load: RoadLoad, settings: Settings, held: float | None = None
-) -> tuple[Manoeuvre, np.ndarray]:
+def followed(track: Track, load: RoadLoad, settings: Settings, held: float | None = None) -> tuple[Manoeuvre, Results]:
     """The manoeuvre in which the car without control keeps the recorded speed, and the signals of that run."""
     F, lacking = needed_force(track, load), 0.0
     with progress(MOST_DRIVES, track.name) as done:
@@ -108,7 +108,7 @@ def followed(
             manoeuvre = drive(track, load, F, held)
             with part(done, k):
                 signals = signals_of(manoeuvre, settings.replace(control=False))
-            if speed_error(signals, track) <= CLOSE:
+            if signals.ended or speed_error(signals, track) <= CLOSE:
                 break
             lacking = lacking_force(track, load, signals["time"], signals["plant.v"])
     return manoeuvre, signals

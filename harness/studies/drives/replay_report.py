@@ -1,6 +1,7 @@
 """The report of `driveline replay`: a recorded drive without damping and with each controller."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +67,8 @@ def report(
 def verdict(rides: Mapping[str, RideMetrics], odd: Sequence[str]) -> str:
     """In one sentence."""
     (_, undamped), (name, damped), *_ = rides.items()
+    if isnan(undamped.gear_torque_rms + damped.gear_torque_rms):
+        return f"Without damping and with {name} there is nothing to compare: see the table of the rides."
     doubt = f"The recording is not plausible ({len(odd)} {'finding' if len(odd) == 1 else 'findings'}); if it is true, "
     return (
         f"{doubt if odd else ''}{name} takes the rms of the gear torque from {undamped.gear_torque_rms:.3g} to "

@@ -4,11 +4,12 @@ from collections.abc import Iterable, Mapping, MutableMapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from hashlib import sha256
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
 from ...base.collected_warnings import warn_once
+from ...base.errors import RunEnded
 from ...simulation.case_archive import Table
 from ...simulation.many_runs import run_many
 from .evidence import Evidence
@@ -99,8 +100,13 @@ def campaign(
 
 
 def outcome(runner: FaultRunner, each: Case) -> Outcome:
-    """What comes of a case."""
-    return judged(runner, each, runner.runs(each))
+    """What comes of a case; one that an FMU ends is clean in the eyes of no judge."""
+    try:
+        runs = runner.runs(each)
+    except RunEnded as reason:
+        warn_once(f"case {each}: {reason}")
+        return Outcome(each, {judge.name: inf for judge in JUDGES})
+    return judged(runner, each, runs)
 
 
 def distinguishing(runner: FaultRunner, seed: int, plan: Plan) -> dict[str, Any]:

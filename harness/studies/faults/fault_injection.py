@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.recfunctions import append_fields, repack_fields
 
+from ...base.errors import RunEnded
 from ...base.known_names import by_name
 from ...cosimulation.experiment import Experiment
 from ...cosimulation.runs import run
@@ -110,6 +111,7 @@ class FaultRunner:
 
         Raises:
             DrivelineError: an FMU is not the one that it is where the campaign was begun.
+            RunEnded: an FMU ended a run before its time.
             SimulationError: an FMU cannot be loaded, or refused a call.
         """
         require_same_fmus(self.digests)
@@ -167,7 +169,10 @@ class FaultRunner:
                 inputs["controller.enable"] = partial(np.less_equal, fault.end)
         given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
         system = with_faults(loop(settings), self._injector)
-        return _completed(at_samples(run(system, Experiment(manoeuvre.duration, **given))))
+        results = run(system, Experiment(manoeuvre.duration, **given))
+        if results.ended:
+            raise RunEnded(f"{results.ended}: there is nothing to judge")
+        return _completed(at_samples(results))
 
     def _T_max(self, plant: str) -> float:
         """The largest torque of the motor in N.m; inf where its FMU does not say."""

@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.errors import SimulationError, UnpackingError
+from ...base.errors import RunEnded, SimulationError, UnpackingError
 from ...base.plain_text import plain
+from ...cosimulation.results import Results
 from ...cosimulation.wiring import fit
 from ...design.uncertainty_box import changed
 from ...loop.settings import Settings, loop
@@ -51,7 +52,7 @@ class CaseRunner:
         self.seed = seed
         self.loops = {key: _loop(settings) for key, settings in given.items()}
 
-    def results(self, case: Case, control: bool = True) -> np.ndarray:
+    def results(self, case: Case, control: bool = True) -> Results:
         """The signals of a case.
 
         Args:
@@ -74,6 +75,8 @@ class CaseRunner:
         """
         try:
             results = self.results(case)
+            if results.ended:
+                raise RunEnded(str(results.ended))
         except UnpackingError:
             raise  # that is the machine, and not the controller
         except SimulationError as reason:

@@ -1,5 +1,6 @@
 """Commands and functions with a plant of somebody else's that misbehaves: one line, an exit code, nothing left."""
 
+import json
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ from typing import Any
 import pytest
 
 from driveline.harness.base.errors import SimulationError
+from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
@@ -48,6 +50,32 @@ def test_a_stranger_that_exits_is_one_line(drive, tmp_path, command):
     assert line.startswith(f"driveline {command}: ")
     assert "plant (stranger.fmu) ended the process that it ran in, with exit code 0, in fmi2DoStep at 0.5" in line
     assert list(temporary.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("command", "last"), slow([*((each, 0.2) for each in COMMANDS), ("compare", 0.199)], but=[("simulate", 0.2)])
+)
+def test_a_run_that_a_stranger_ends_has_no_metrics_and_one_of_less_than_200_ms_no_files(
+    native, tmp_path, capsys, command, last
+):
+    does = {"IN_DO_STEP": f"if (time > {last - 5e-4}) return 2"}
+    does["IN_GET_BOOLEAN_STATUS"] = "if (kind == 3) { *value = 1; return 0; }"
+    plant, out = build_stranger(tmp_path, **does), tmp_path / "out"
+    words = [*COMMANDS[command], "--plant", plant, "--fmus", native.parent, "--output", out]
+    pages = [] if command == "simulate" else ["--report", out / "page.html"]
+    code = main([str(word) for word in [*words, *pages]])
+    said = capsys.readouterr()
+    why = f"the run ended at {last:g} s"
+    if last < 0.2:
+        assert code == 1
+        assert f"plant (stranger.fmu) ended the run at {last:g} s: there is nothing to evaluate" in said.err
+        assert not out.exists()
+        return
+    assert code == 0
+    assert why in said.out
+    assert all(why in page.read_text() for page in [*out.glob("*.md"), *out.glob("*.html")])
+    remarks = [json.loads(each.read_text()).get("remarks") for each in out.glob("*.json")]
+    assert all(run["ended"]["time"] == pytest.approx(0.2) for runs in remarks for run in runs.values())
 
 
 @pytest.mark.parametrize("number", slow([signal.SIGINT, signal.SIGTERM], but=[signal.SIGTERM]))

@@ -16,7 +16,7 @@ import fmpy
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import SimulationError, UnpackingError, WiringError
+from driveline.harness.base.errors import RunEnded, SimulationError, UnpackingError, WiringError
 from driveline.harness.cosimulation import isolated_process
 from driveline.harness.cosimulation.call_trace import current, note
 from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
@@ -120,7 +120,7 @@ def test_the_steps_in_python_name_the_same(tmp_path, fault, fmi):
 @every_fmi
 @pytest.mark.parametrize("make", [CompiledSteps, interpreted])
 @pytest.mark.parametrize("own", [False, True])
-def test_the_rows_up_to_the_end_that_an_fmu_asks_for_are_the_result(tmp_path, make, fmi, own, caplog):
+def test_the_rows_up_to_the_end_that_an_fmu_asks_for_are_the_result(tmp_path, make, fmi, own):
     """In a process of its own, or in this one as those of the project, where it is not watched for in FMI 3.0."""
     if own and fmi == 3 and make is CompiledSteps:
         pytest.skip("those of the project never ask")
@@ -134,7 +134,14 @@ def test_the_rows_up_to_the_end_that_an_fmu_asks_for_are_the_result(tmp_path, ma
             results = loop.run(Experiment(0.3))
             np.testing.assert_allclose(results["time"], 1e-3 * np.arange(101), atol=1e-12)
             np.testing.assert_allclose(results[list(results.dtype.names or [])[1]], results["time"], atol=1e-12)
-    assert [each.getMessage() for each in caplog.records] == ["car (stranger.fmu) has ended the run at 0.1 s"] * 2
+            assert pickle.loads(pickle.dumps(results[1:])).ended == ("car (stranger.fmu)", pytest.approx(0.1))
+
+
+def test_an_fmu_that_ends_the_run_in_its_first_step_is_named(tmp_path):
+    ends = {"IN_DO_STEP": "return 2", "IN_GET_BOOLEAN_STATUS": "if (kind == 3) { *value = 1; return 0; }"}
+    system = System({"car": build_stranger(tmp_path, **ends)})
+    with pytest.raises(RunEnded, match=r"^car \(stranger\.fmu\) ended the run in its first step: there is nothing to"):
+        run(system, Experiment(0.3))
 
 
 AFTERWARDS = {
@@ -176,14 +183,16 @@ def test_a_binary_in_the_folder_of_the_other_version_is_found(tmp_path, fmi):
 SHORT = "if (step < 0.0099) return 2"
 
 
+@pytest.mark.parametrize("ended", [False, True])
 @every_fmi
 @pytest.mark.parametrize("make", [CompiledSteps, interpreted])
 @pytest.mark.parametrize("scheme", Scheme)
-def test_an_fmu_that_refuses_short_steps_makes_its_own(tmp_path, fmi, make, scheme, caplog):
-    """Ten steps of the loop long: inputs are held over it, outputs from its end on."""
-    path = build_stranger(
-        tmp_path, fmi=fmi, IN_DO_STEP=SHORT, IN_GET_REAL="if (n > 1) values[0] = now, values[1] = kept[0]"
-    )
+def test_an_fmu_that_refuses_short_steps_makes_its_own(tmp_path, fmi, make, scheme, ended, caplog):
+    """Ten steps of the loop long: inputs are held over it, outputs from its end on. Some refuse by asking for the end
+    of the run (PythonFMU)."""
+    asks = {"IN_GET_BOOLEAN_STATUS": "if (kind == 3) { *value = 1; return 0; }"} if ended else {}
+    outputs = "if (n > 1) values[0] = now, values[1] = kept[0]"
+    path = build_stranger(tmp_path, fmi=fmi, IN_DO_STEP=SHORT, IN_GET_REAL=outputs, **asks)
     path = tampered(path, tmp_path / "slow.fmu", lambda xml: xml.replace('stepSize="0.001"', 'stepSize="0.01"'))
     k = np.arange(36)
     with loaded(System({"car": path}), make_steps=make) as loop:
@@ -192,15 +201,19 @@ def test_an_fmu_that_refuses_short_steps_makes_its_own(tmp_path, fmi, make, sche
             np.testing.assert_allclose(results["car.omega_1"], 0.01 * (k // 10), atol=1e-12)
             late = 0 if scheme is Scheme.PROPAGATED else 10
             np.testing.assert_array_equal(results["car.omega_2"], np.maximum(k // 10 * 10 - late, 0))
+            assert results.remarks == {"own_steps": {"car": 0.01}}
     (said,) = [each.getMessage() for each in caplog.records]
     assert said.startswith("car (slow.fmu) refuses steps of 0.001 s and makes its own, of 0.01 s; its inputs and")
 
 
-@pytest.mark.parametrize(("own", "refuses"), [("0.01", "0.02"), ("0.0015", "0.0012")])
-def test_an_fmu_whose_own_step_is_refused_or_no_multiple_is_refused(tmp_path, own, refuses):
+NO_MULTIPLE = "; its own step of 0.0015 s is no multiple of the loop's 0.001 s"
+
+
+@pytest.mark.parametrize(("own", "refuses", "why"), [("0.01", "0.02", ""), ("0.0015", "0.0012", NO_MULTIPLE)])
+def test_an_fmu_whose_own_step_is_refused_or_no_multiple_is_refused(tmp_path, own, refuses, why):
     path = build_stranger(tmp_path, IN_DO_STEP=f"if (step < {refuses}) return 3")
     path = tampered(path, tmp_path / "slow.fmu", lambda xml: xml.replace('stepSize="0.001"', f'stepSize="{own}"'))
-    with pytest.raises(SimulationError, match=r"answered fmi2DoStep at 0(\.009)? s with error"):
+    with pytest.raises(SimulationError, match=rf"answered fmi2DoStep at 0(\.009)? s with error: no message{why}$"):
         run(System({"car": path}), Experiment(0.03))
 
 

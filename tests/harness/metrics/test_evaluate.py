@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from driveline.harness.cosimulation.results import Results
+from driveline.harness.cosimulation.results import Ended, Results
 from driveline.harness.loop.places import T_S
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.signals import lines
@@ -276,6 +276,14 @@ def test_a_run_that_is_too_short_has_no_metrics_of_its_end(name, duration):
     found = without_value(evaluate(run(duration=duration, T_gear=decaying(0.1)[0]), MANOEUVRES[name]))
     assert set(STEP_METRICS) <= found.keys()
     assert all(found.values())
+
+
+@pytest.mark.parametrize("rows", [1, 2001])
+def test_a_run_that_an_fmu_has_ended_has_no_metrics(rows):
+    ended = Results(run()[:rows], {})
+    ended.ended = Ended("plant (car.fmu)", 2.0)
+    metrics = evaluate(ended, MANOEUVRES["tipin15"])
+    assert metrics.absent == {metric.name: "the run ended at 2 s" for metric in declared(Metrics)}
 
 
 def test_the_peak_of_the_gear_torque_is_that_after_a_step_and_else_of_the_whole_run():

@@ -84,7 +84,7 @@ def test_a_ride_without_damage_has_a_dash_and_no_ratio():
         ["without", "damping", "2", "(1.000)", "-", "4", "(1.000)", "0", "(-)"],
         ["mine", "1", "(0.500)", "1", "(-)", "3", "(0.750)", "0.5", "(-)"],
     ]
-    assert rides_reasons(rides) == ["- gear damage without damping: not finite"]
+    assert rides_reasons(rides) == ["- gear damage: not finite (without damping)"]
 
 
 def test_the_terminal_table_names_plant_units_and_runs():

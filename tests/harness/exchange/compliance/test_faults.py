@@ -192,6 +192,15 @@ def test_a_claim_that_the_binary_does_not_keep_is_found(tmp_path, fmi, does, fau
     assert re.search(finding, broken[rule])
 
 
+@pytest.mark.parametrize(("fmi", "last", "ended"), [(2, 0.1, True), (3, 0.1, True), (2, 0.2, False)])
+def test_an_fmu_that_ends_its_default_experiment_of_200_ms_is_noted(tmp_path, fmi, last, ended):
+    asks = {"IN_GET_BOOLEAN_STATUS": "if (kind == 3) { *value = 1; return 0; }"}
+    path = build_stranger(tmp_path, fmi=fmi, IN_DO_STEP=f"if (time > {last - 5e-4}) return 2", **asks)
+    (verdict,) = (each for each in check(path) if each.rule == "end")
+    assert verdict.problems == ["it ends the default experiment at 0.1 of 0.2 s"] * ended
+    assert verdict.severity == "note"
+
+
 def test_a_value_that_is_not_kept_and_a_function_that_is_missing_are_found(tmp_path):
     broken = judged(build_stranger(tmp_path, IN_SET_REAL="start()", fmi2CancelStep="anotherName"))
     assert broken["sets"].startswith("T_mot is 0.0 after it was set to 0.01")

@@ -6,20 +6,21 @@ import signal
 from collections import Counter
 from dataclasses import astuple
 from hashlib import sha256
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.base.collected_warnings import warn_once
-from driveline.harness.base.errors import DrivelineError
+from driveline.harness.base.errors import DrivelineError, RunEnded
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.loop.places import NO_DAMPING
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults import evidence, fault_catalogue
-from driveline.harness.studies.faults.fault_campaign import campaign
+from driveline.harness.studies.faults.fault_campaign import campaign, outcome, table
 from driveline.harness.studies.faults.fault_cases import PLANS, SITUATIONS, Case, Fault, case
 from driveline.harness.studies.faults.fault_catalogue import FRAME, KINDS, LATE, LOCK, NOTHING, SPIN
 from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
@@ -117,6 +118,19 @@ def test_a_controller_that_tells_neither_status_nor_torque_is_judged_by_the_rest
         told = {name: value for name, value in our.measured.items() if name not in silent}
         assert {name: their.measured[name] for name in told} == pytest.approx(told, rel=1e-9, abs=1e-9)
     assert "mine.fmu has no output status; not judged: noticed, stale, false alarm, back" in caplog.text
+
+
+def test_a_case_that_an_fmu_ends_is_not_clean(caplog):
+    class Ended:
+        def runs(self, _):
+            raise RunEnded("plant (car.fmu) ended the run at 2 s")
+
+    warn_once.cache_clear()
+    each = case(1, 1, PLANTS)
+    found = outcome(cast(Any, Ended()), each)
+    assert found.failed == tuple(judge.name for judge in JUDGES if judge.name not in each.plan.excused)
+    assert table(1, PLANTS).parsed(table(1, PLANTS).cells(each, found)) == (each, found)
+    assert caplog.messages == [f"case {each}: plant (car.fmu) ended the run at 2 s"]
 
 
 def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, settings):

@@ -9,6 +9,7 @@ import pytest
 
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.base.errors import DrivelineError, SimulationError, UnpackingError
+from driveline.harness.cosimulation.results import Ended, Results
 from driveline.harness.design.uncertainty_box import BOX, DOUBLINGS, LOSS, Deviation, changed, deviating
 from driveline.harness.loop.places import PLACES
 from driveline.harness.loop.settings import Settings
@@ -55,6 +56,14 @@ def test_what_an_fmu_refuses_is_an_outcome_and_what_the_machine_refuses_is_not(e
             CaseRunner.outcome(Pretended(), case)
     else:
         assert CaseRunner.outcome(Pretended(), case).reason == "no space left"
+
+
+def test_a_run_that_an_fmu_ends_is_neither_bounded_nor_quiet(monkeypatch):
+    ended = Results(np.zeros(3, [("time", float)]), {})
+    ended.ended = Ended("plant (car.fmu)", 2.0)
+    monkeypatch.setattr(CaseRunner, "results", lambda *_: ended)
+    found = CaseRunner.outcome(Pretended(), cases(LOOPS, [1])[0])
+    assert (found.reason, found.bounded, found.quiet) == ("plant (car.fmu) ended the run at 2 s", False, False)
 
 
 def test_every_controller_gets_every_draw_in_every_manoeuvre():
