@@ -61,8 +61,7 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
     """What the options say for each plant with each controller, by the names of both.
 
     Of several controllers the file of parameters is for those that have all that it names, and a value of --set for
-    those that have the parameter; the others keep theirs. So is an entry of --map; where FMUs of somebody else stand
-    beside blocks of the project in a place, it is for those.
+    those that have the parameter; the others keep theirs. Of --map see `harness.loop.mapped_names.mappings`.
 
     Args:
         plants: none: all of the project.
@@ -75,17 +74,16 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
     from ..cosimulation.parameter_changes import parted
     from ..cosimulation.wiring import find, fit, require
     from ..loop.given_parameters import NotTaken
+    from ..loop.mapped_names import mappings
 
     plants = list(by_name(plants or PLANTS, "plant").values())
     each = by_name(controllers or PLACES["controller"], "controller")
-    mapped = {place: _mapped(args, place, names) for place, names in (("plant", plants), ("controller", each.values()))}
+    mapped = mappings(args.map, plants, list(each.values()), args.limits)
     several, found = len(each) > 1, dict[tuple[str, str], Settings]()
     for plant in plants:
         refusals = []
         for name, controller in each.items():
-            others = {n: theirs for n, theirs in args.map.items() if n.partition(".")[0] not in mapped}
-            entries = others | mapped["plant"][plant] | mapped["controller"][controller]
-            own = dataclasses.replace(args, map=entries)
+            own = dataclasses.replace(args, map=mapped[plant, controller])
             try:
                 made = settings(own, plant, controller, bool(found), several)
             except NotTaken as refusal:
@@ -102,24 +100,6 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
         elif lacking:
             LOG.warning("--set %s: %s has no such parameter and runs without it", parameter, ", ".join(lacking))
     return found
-
-
-def _mapped(args: Loop, place: str, blocks: Iterable[str]) -> dict[str, dict[str, str]]:
-    """For each block in a place its entries of --map; one that none of several has is for all, to be refused."""
-    from ..cosimulation.interface import Interface
-
-    entries = {name: theirs for name, theirs in args.map.items() if name.partition(".")[0] == place}
-    foreign = [block for block in blocks if block not in PLACES[place]]
-    several = entries and len(foreign) > 1
-    has = {block: Interface(Path(block), args.limits).variables for block in foreign} if several else {}
-    none_has = {theirs for theirs in entries.values() if not any(theirs in each for each in has.values())}
-
-    def taken(block: str) -> dict[str, str]:
-        if foreign and block not in foreign:
-            return {}
-        return {name: theirs for name, theirs in entries.items() if theirs in none_has or theirs in has[block]}
-
-    return {block: taken(block) for block in blocks}
 
 
 def plants_settings(args: Any) -> dict[str, Settings]:

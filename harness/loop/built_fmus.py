@@ -10,9 +10,10 @@ from ...fmus.origin import is_stale, located
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError
 from ..cosimulation.system import System
+from ..cosimulation.wiring import fit
 from .mapped_names import require_known
 from .places import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile
-from .settings import Changes, Settings, chosen_build, loop, settings
+from .settings import Changes, Settings, chosen_build, loop, running, settings
 from .stale_fmus import warn_of_stale
 
 if TYPE_CHECKING:
@@ -66,6 +67,12 @@ def require_there(made: Settings) -> System:
         raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{name}{only}{where}` makes it")
     warn_of_stale(system)
     return system
+
+
+def require_fitting(loops: Iterable[Settings]) -> None:
+    """As `require_there`, of each of several loops before the first one runs; refuses those that do not fit too."""
+    for made in loops:
+        fit(require_there(running(made)), parameters=made.parameters)
 
 
 Needed = Mapping[str, Collection[str]]

@@ -1,11 +1,48 @@
-"""Whether what a mapping names is something of the loop."""
+"""For which blocks a mapping is, and whether what it names is something of the loop."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
+from pathlib import Path
 
 from ...fmus.names import meant
 from ..base.errors import WiringError
+from ..cosimulation.limits import Limits
 from .places import CONNECTIONS, INPUTS, OFFERED, OUTPUTS, PARAMETERS, PLACES
+
+
+def mappings(
+    mapping: Mapping[str, str], plants: Sequence[str], controllers: Sequence[str], limits: Limits
+) -> dict[tuple[str, str], dict[str, str]]:
+    """What of a mapping is for each plant with each controller: of several FMUs of somebody else in a place, an entry
+    is for those that have the variable; blocks of the project beside them get none.
+
+    Args:
+        plants, controllers: names of blocks, or paths of FMUs.
+    """
+    places = {"plant": plants, "controller": controllers}
+    own = {place: _entries(mapping, place, blocks, limits) for place, blocks in places.items()}
+    others = {name: theirs for name, theirs in mapping.items() if name.partition(".")[0] not in places}
+    return {(p, c): others | own["plant"][p] | own["controller"][c] for p in plants for c in controllers}
+
+
+def _entries(
+    mapping: Mapping[str, str], place: str, blocks: Iterable[str], limits: Limits
+) -> dict[str, dict[str, str]]:
+    """For each block in a place its entries; one that none of several has is for all, to be refused."""
+    from ..cosimulation.interface import Interface  # who asks for help alone needs no fmpy
+
+    entries = {name: theirs for name, theirs in mapping.items() if name.partition(".")[0] == place}
+    foreign = [block for block in blocks if block not in PLACES[place]]
+    several = entries and len(foreign) > 1
+    has = {block: Interface(Path(block), limits).variables for block in foreign} if several else {}
+    none_has = {theirs for theirs in entries.values() if not any(theirs in each for each in has.values())}
+
+    def taken(block: str) -> dict[str, str]:
+        if foreign and block not in foreign:
+            return {}
+        return {name: theirs for name, theirs in entries.items() if theirs in none_has or theirs in has[block]}
+
+    return {block: taken(block) for block in blocks}
 
 
 def require_known(mapping: Mapping[str, str]) -> None:

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterable, Mapping
 from functools import partial
-from itertools import product
 from os import PathLike
 from typing import Unpack
 
 from ...base.argument_kinds import BLOCKS, require_each
 from ...base.errors import DrivelineError
+from ...loop.built_fmus import require_fitting
+from ...loop.mapped_names import mappings
 from ...loop.places import PLACES, PLANTS, NameOrFile
 from ...loop.settings import RunChanges, Settings
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
@@ -35,7 +36,8 @@ def compare(
         manoeuvres: each of a name of its own.
         plants: names of plants of the project, or paths of FMUs.
         controllers: names of controllers of the project, or paths of FMUs; the first is the one that is switched off.
-        changes: fields of the settings that are to be others, as of `simulate`, for all runs.
+        changes: fields of the settings that are to be others, as of `simulate`, for all runs; an entry of the mapping
+            is for the FMUs of somebody else that have the variable.
 
     Returns:
         The metrics of each run, in SI units, by (plant, manoeuvre, controller): the name or path of the plant, the name
@@ -56,7 +58,10 @@ def compare(
         [str(block) for block in require_each(name, given, str | PathLike, BLOCKS)] for name, given in blocks.items()
     ]
     common, todo = Settings().replace(**changes), cases(each[0], list(by_name), each[1])
-    loops = loops_of({(p, c): common.replace(plant=p, controller=c) for p, c in product(*each)})
+    mapped = mappings(common.mapping, *each, common.limits)
+    made = {(p, c): common.replace(plant=p, controller=c, mapping=own) for (p, c), own in mapped.items()}
+    require_fitting(made.values())
+    loops = loops_of(made)
     one = partial(_metrics, manoeuvres=by_name, loops=loops)
     return dict(zip(todo, run_many(one, todo, label="comparing"), strict=True))
 

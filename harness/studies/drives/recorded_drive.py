@@ -7,7 +7,8 @@ from typing import Unpack
 from ...base.argument_kinds import BLOCKS, require_each, require_kind
 from ...base.errors import DrivelineError
 from ...base.known_names import by_name
-from ...loop.built_fmus import require_there
+from ...loop.built_fmus import require_fitting
+from ...loop.mapped_names import mappings
 from ...loop.places import PLACES, PLANTS, NameOrFile
 from ...loop.settings import RunChanges, Settings
 from ...manoeuvres.road_load import Track
@@ -41,7 +42,7 @@ def replay(
         plant: name of a plant of the project, or path of an FMU.
         controllers: names of controllers of the project, or paths of FMUs; the first is the one that is switched off.
         held: seconds for which the demand is sampled and held, a rougher foot; None: straight lines.
-        changes: fields of the settings that are to be others, as of `simulate`, for all rides.
+        changes: fields of the settings that are to be others, as of `compare`, for all rides.
 
     What makes the recording implausible is logged as warnings.
 
@@ -63,9 +64,10 @@ def replay(
         raise DrivelineError("there is no controller to drive with; NoDamping is one too")
     named = by_name(map(str, controllers), "controller")
     common = Settings(plant).replace(**changes)
-    given = {name: common.replace(controller=controller) for name, controller in named.items()}
-    for each in given.values():
-        require_there(each)
+    mapped = mappings(common.mapping, [str(plant)], list(named.values()), common.limits)
+    own = {name: mapped[str(plant), controller] for name, controller in named.items()}
+    given = {name: common.replace(controller=named[name], mapping=own[name]) for name in named}
+    require_fitting(given.values())
     load, T_max = car_of(next(iter(given.values())))
     tell(of_drive(drive, load, T_max), drive.name)
     found = rides(Track.of(drive, T_max), load, given, held)

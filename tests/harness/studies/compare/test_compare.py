@@ -11,6 +11,7 @@ from driveline.harness.base.errors import DrivelineError
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
 from driveline.harness.simulation import many_runs
+from driveline.harness.studies.compare import side_by_side
 from driveline.harness.studies.compare.compare import (
     Outcome,
     cases,
@@ -19,6 +20,7 @@ from driveline.harness.studies.compare.compare import (
     run_cases,
     write_tables,
 )
+from tests.foreign import tampered
 
 OURS = PLACES["controller"][0]
 
@@ -71,6 +73,22 @@ def test_a_program_gets_the_metrics_of_each_run_by_what_it_was(native, tmp_path)
     }
     expected = {case: driveline.evaluate(results, tipin) for case, results in runs.items()}
     assert driveline.frame(found).equals(driveline.frame(expected))
+
+
+def test_a_mapping_is_for_the_controllers_that_have_its_names(native, tmp_path, monkeypatch):
+    theirs = tampered(native / f"{OURS}.fmu", tmp_path / "Mine.fmu", lambda xml: xml.replace('"T_ref"', '"out"'))
+
+    def mappings(todo, loops):
+        return [loops[case.plant, case.controller].mapping for case in todo]
+
+    monkeypatch.setattr(side_by_side, "run_many", lambda one, todo, label: mappings(todo, one.keywords["loops"]))
+    tipin, given = driveline.MANOEUVRES["tipin15"], {"folder": native.parent}
+    blocks = ["TwoMassDriveline"], [OURS, theirs]
+    found = driveline.compare([tipin], *blocks, mapping={"controller.T_ref": "out"}, **given)
+    assert list(found.values()) == [{}, {}, {"controller.T_ref": "out"}]
+    monkeypatch.setattr(side_by_side, "run_many", None)
+    with pytest.raises(DrivelineError, match=r"in Mine\.fmu nowhere does not exist"):
+        driveline.compare([tipin], *blocks, mapping={"controller.T_ref": "nowhere"}, **given)
 
 
 @pytest.mark.parametrize("own", ["plant", "control", "controller", "gearbox"])

@@ -26,8 +26,10 @@ from driveline.harness.manoeuvres.speed_following import drive, needed_force
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.simulation.simulate import _offered, simulate
+from driveline.harness.studies.drives import recorded_drive
 from driveline.harness.studies.drives.replay import CLOSE, followed, replay, signals_of, speed_error, write
 from tests import ROOT
+from tests.foreign import tampered
 from tests.slow import slow
 
 DATA = ROOT.parent / "shared" / "data"
@@ -122,6 +124,20 @@ def test_a_controller_that_is_not_built_is_named_before_the_rides(short_drive, s
     with pytest.raises(driveline.DrivelineError, match=missing) as refused:
         driveline.replay(driveline.read_drive(short_drive), **given)
     assert refused.value.__cause__ is None
+
+
+def test_a_mapping_is_for_the_controllers_that_have_its_names(short_drive, settings, tmp_path, monkeypatch):
+    ours = settings.folder / "native" / "DampingController.fmu"
+    theirs = tampered(ours, tmp_path / "Mine.fmu", lambda xml: xml.replace('"T_ref"', '"out"'))
+    given = {"controllers": ["DampingController", theirs], "folder": settings.folder, "build": "native"}
+    found = {}
+    monkeypatch.setattr(recorded_drive, "rides", lambda track, load, loops, held: found.update(loops))
+    monkeypatch.setattr(recorded_drive, "followed_speed", lambda drive, rides: [])
+    recording = driveline.read_drive(short_drive)
+    driveline.replay(recording, mapping={"controller.T_ref": "out"}, **given)
+    assert [made.mapping for made in found.values()] == [{}, {"controller.T_ref": "out"}]
+    with pytest.raises(driveline.DrivelineError, match=r"in Mine\.fmu nowhere does not exist"):
+        driveline.replay(recording, mapping={"controller.T_ref": "nowhere"}, **given)
 
 
 def town():
