@@ -10,10 +10,24 @@ LOG = logging.getLogger(__name__.partition(".")[0])
 """All loggers of the package are below it."""
 
 
+_silent: ContextVar[bool] = ContextVar("silent", default=False)
+
+
 @cache
 def warn_once(text: str) -> None:
     """Logs a warning, unless it has been logged before."""
-    LOG.warning("%s", text)
+    if not _silent.get():
+        LOG.warning("%s", text)
+
+
+@contextmanager
+def as_if_logged(silent: bool) -> Iterator[None]:
+    """Within it, if `silent`, what is to be warned of once counts as logged, also if a worker says it later."""
+    before = _silent.set(silent)
+    try:
+        yield
+    finally:
+        _silent.reset(before)
 
 
 class CollectedWarnings(logging.Handler):

@@ -94,12 +94,17 @@ def loaded(
     fitted = fit(system, inputs, parameters)
     if reason := why_not():
         warn_once(reason)
-    for name in fitted.absent:
-        LOG.warning("%s: %s does not have it; the loop runs without", name, fitted.file(name))
+    warn_of_absent(fitted)
     LOG.info("under the propagated scheme, %s", described(transfers(fitted.system, fitted.interfaces)))
     load = _here if system.instances.keys() <= system.own else _isolated
     with load(fitted, folder, make_steps) as loop:
         yield loop
+
+
+def warn_of_absent(fitted: Fit) -> None:
+    """Says once what the loop runs without."""
+    for name in fitted.absent:
+        warn_once(f"{name}: {fitted.file(name)} does not have it; the loop runs without")
 
 
 _here: Callable[[Fit, Path | None, MakeSteps], Any] = opened

@@ -58,7 +58,7 @@ def compare(
         [str(block) for block in require_each(name, given, str | PathLike, BLOCKS)] for name, given in blocks.items()
     ]
     common, todo = Settings().replace(**changes), cases(each[0], list(by_name), each[1])
-    mapped = mappings(common.mapping, *each, common.limits)
+    mapped = mappings(common.mapping, each[0], each[1], common.limits)
     made = {(p, c): common.replace(plant=p, controller=c, mapping=own) for (p, c), own in mapped.items()}
     require_fitting(made.values())
     loops = loops_of(made)
