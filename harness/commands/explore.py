@@ -13,6 +13,7 @@ examples:
 
 from pathlib import Path
 
+from ..loop.places import PLACES
 from ..manoeuvres.catalogue import MANOEUVRES
 from .arguments import option
 from .manoeuvres import Chosen, Listing, manoeuvre
@@ -34,6 +35,13 @@ class Arguments(Headings, Listing, Loop, Printing):
 
 def run(args: Arguments) -> int:
     args.manoeuvre.beside(MANOEUVRES)
+    blocks = {"plant": args.plant, "controller": args.controller, "motor": [args.motor], "can": [args.can]}
+    for path in [Path(name) for place, names in blocks.items() for name in names if name not in PLACES[place]]:
+        if path.suffix == ".fmu":
+            from ..cosimulation.interface import Interface
+            from ..explorer.module import sources_of
+
+            sources_of(Interface(path, args.limits))
     given = all_settings(args, args.plant, args.controller)
     # here and not above: mistakes and help are answered without them
     import webbrowser

@@ -104,6 +104,7 @@ def job(
     reports, inputs, wired = _reports(args), [*read, *_files(args)], _wired(systems)
     one = RunJob(args, reports)
     with recorded(record, run, wired, inputs, [*results, *reports], args.replace) as made:
+        _warn_of_absent(args, made.fits)
         one.start(made, lambda: content(run, made.fits, [], inputs, made.found))
         yield one
     one.end(record)
@@ -127,11 +128,13 @@ def campaign_job(
     Raises:
         DrivelineError: there are results of another campaign; nothing has been run.
     """
+    from ..cosimulation.wiring import fit
     from ..simulation.case_archive import resumable
 
-    reports = _reports(args)
+    reports, wired = _reports(args), _wired(systems)
+    _warn_of_absent(args, {name: fit(system) for name, system in wired.items()})
     one: Job[Campaign[Any, Any]] = Job(args, reports)
-    with resumable(path, table, record, run, _wired(systems), _files(args), reports, args.replace) as made:
+    with resumable(path, table, record, run, wired, _files(args), reports, args.replace) as made:
         one.start(made, lambda: made.provenance)
         yield one, made.archive
     one.end(record)
@@ -164,6 +167,16 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
         "seed": made.seed,
         "mapping": made.mapping,
     }
+
+
+def _warn_of_absent(args: Printing, fits: "Mapping[str, Fit]") -> None:
+    """Before any worker does: once a command, and with --quiet not at all."""
+    from ..base.collected_warnings import as_if_logged
+    from ..cosimulation.loading import warn_of_absent
+
+    with as_if_logged(args.quiet):
+        for fitted in fits.values():
+            warn_of_absent(fitted)
 
 
 def _reports(args: Any) -> list[Path]:

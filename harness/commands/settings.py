@@ -22,7 +22,7 @@ def settings(
     """What the options say for a plant and a controller; the FMUs are there then.
 
     Args:
-        silent: not to warn of gains, as that was done for another loop.
+        silent: not to warn of gains.
         one_of_several: see `harness.loop.given_parameters.built_with`.
         run: fields of the settings that no option of the loop gives.
 
@@ -46,15 +46,27 @@ def settings(
         limits=args.limits,
         **run,
     )
+    made = built_with(given, args.vehicle, args.parameters, dict(args.set), one_of_several)
     if not silent:
-        warn_of_gains(args.vehicle, args.parameters)
-    return built_with(given, args.vehicle, args.parameters, dict(args.set), one_of_several)
+        warn_of_gains(args.vehicle, args.parameters, [made])
+    return made
 
 
-def warn_of_gains(vehicle: Path | None, parameters: Path | None) -> None:
-    """Says that a car is driven with the gains of another one."""
-    if vehicle is not None and parameters is None:
+def warn_of_gains(vehicle: Path | None, parameters: Path | None, loops: Iterable[Settings]) -> None:
+    """Says that a car is driven with the gains of another one, if a controller has such gains."""
+    if vehicle is not None and parameters is None and any(map(_has_gains, loops)):
         LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
+
+
+def _has_gains(made: Settings) -> bool:
+    if str(made.controller) in PLACES["controller"]:
+        return True
+    from ...fmus.building.parameter_files import car_names
+    from ...fmus.catalogue import FMUS
+    from ..cosimulation.wiring import fit
+
+    has = {variable.name for variable in fit(loop(made)).interfaces["controller"].of_causality("parameter")}
+    return bool(has & {*FMUS["DampingController"].block.Parameters._fields} - {*car_names()})
 
 
 def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) -> dict[tuple[str, str], Settings]:
@@ -85,13 +97,14 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
         for name, controller in each.items():
             own = dataclasses.replace(args, map=mapped[plant, controller])
             try:
-                made = settings(own, plant, controller, bool(found), several)
+                made = settings(own, plant, controller, True, several)
             except NotTaken as refusal:
                 refusals.append(refusal)
                 if len(refusals) == len(each):
                     raise refusals[0] from None
                 made = settings(dataclasses.replace(own, parameters=None), plant, controller, True, several)
             found[made.plant_name, name] = made
+    warn_of_gains(args.vehicle, args.parameters, found.values())
     for parameter in dict(args.set) if several else ():
         lacking = dict.fromkeys(name for (_, name), made in found.items() if parameter not in made.parameters)
         if len(lacking) == len(each):

@@ -32,12 +32,13 @@ def parsed(texts: Iterable[str]) -> dict[str, str]:
     mapping: dict[str, str] = {}
     for text in texts:
         name, equals, theirs = (part.strip() for part in text.partition("="))
-        if not equals and name.endswith(".toml"):
+        if not equals and (name.endswith(".toml") or Path(name).is_file()):
             found = read(Path(name))
         elif theirs and all(name.partition(".")):
             found = {name: theirs}
         else:
-            raise WiringError(f"{text!r} is not of the form plant.T_gear=Shaft.tau, nor a file such as theirs.toml")
+            no_file = "" if equals else f", and there is no file {name}"
+            raise WiringError(f"{text!r} is not of the form plant.T_gear=Shaft.tau{no_file}")
         for each, own in found.items():
             if mapping.setdefault(each, own) != own:
                 raise WiringError(f"{each} cannot be both {mapping[each]} and {own}")
@@ -53,6 +54,8 @@ def read(path: Path) -> dict[str, str]:
     Raises:
         WiringError: there is no such file, or it is no such mapping.
     """
+    if not path.exists():
+        raise WiringError(f"there is no file {path}")
     try:
         entries = toml_entries(path)
     except (OSError, ValueError) as error:

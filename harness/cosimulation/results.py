@@ -78,6 +78,10 @@ class Results(np.ndarray):
         read.flags.writeable = False
         return read
 
+    def __contains__(self, key: Any) -> bool:
+        """Whether there is such a column; of anything else what numpy says."""
+        return key in (self.dtype.names or ()) if isinstance(key, str) else super().__contains__(key)
+
     def pieces(self) -> Iterator[slice]:
         """The rows, piece by piece; what has been done with a piece takes no memory at the next one."""
         each = max(1, RESIDENT // self.itemsize)

@@ -62,7 +62,8 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
     there = system.without(absent)
     found = Fit(replace(there, connections=(*there.connections, *made)), interfaces, absent)
     problems += _duplicates(interfaces)
-    require([*problems, *_misfits(found.system, interfaces), *unknown(found, inputs, parameters)])
+    misfits = [*_misfits(found.system, interfaces)]
+    require([*problems, *misfits, *unknown(found, inputs, parameters), *_drafts(found.system, interfaces)])
     return found
 
 
@@ -155,6 +156,18 @@ def _check_port(port: Port, causality: str, interfaces: Mapping[str, Interface])
         return
     if variable.type != "Real":
         yield f"{port.name} is {type_of(variable)}; it must be Real, in {port.unit}"
+
+
+def _drafts(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:
+    """Which command helps where FMUs of somebody else beside ours, which nobody maps, lack what is exchanged with
+    them."""
+    ports = [(port.name, causality) for causality, ports in system.ports.items() for port in ports]
+    known = {*system.own, *(name.partition(".")[0] for name in system.mapping)}
+    for instance, interface in interfaces.items() if system.own else ():
+        lacks = (find(*port, interfaces)[1] for port in ports if port[0].startswith(f"{instance}."))
+        if instance not in known and any(lacks):
+            place = "" if instance == "plant" else f" --place {instance}"
+            yield f"`driveline map {interface.path}{place}` drafts which of its variables are meant, for --map"
 
 
 def _check_ends(connection: Connection, interfaces: Mapping[str, Interface]) -> Iterator[str]:

@@ -166,7 +166,7 @@ def build(fits: Mapping[str, Fit], columns: Sequence[str] = COLUMNS) -> Module:
         DrivelineError: there is no Zig, or an FMU has no C source of FMI 2.0.
     """
     fmus = {each.identifier: each for fitted in fits.values() for each in fitted.interfaces.values()}
-    sources = {name: _sources(interface) for name, interface in fmus.items()}
+    sources = {name: sources_of(interface) for name, interface in fmus.items()}
     names = list(fmus)
     loops = [loop(k, fitted, _inputs(fitted), names) for k, fitted in enumerate(fits.values())]
     exchanging = frozenset(name for name, each in fmus.items() if each.description.modelExchange)
@@ -184,7 +184,7 @@ def build(fits: Mapping[str, Fit], columns: Sequence[str] = COLUMNS) -> Module:
     )
 
 
-def _sources(interface: Interface) -> dict[str, bytes]:
+def sources_of(interface: Interface) -> dict[str, bytes]:
     """The C files of an FMU by name.
 
     Raises:
@@ -196,7 +196,7 @@ def _sources(interface: Interface) -> dict[str, bytes]:
         }
     if WHOLE not in found or interface.fmi != 2:
         raise DrivelineError(
-            f"{interface.path}: a page has loops of FMUs that were built from Python, whose C source is in them; "
+            f"{interface.path}: explore takes FMUs that `driveline build` made from Python, whose C source is in them; "
             "`driveline compare --report` and `simulate` run every FMU"
         )
     return found

@@ -97,7 +97,12 @@ def _of_files(
     usual = FMUS[PLANTS[0]].block.Parameters._field_defaults
     if "plant" not in system.own and vehicle is not None:
         if lacking := sorted(of_plants() & values.keys() - names["plant"]):
-            LOG.warning("%s has no parameter %s: the file reaches the other blocks alone", plant, ", ".join(lacking))
+            taken, lacks = ", ".join(sorted(values.keys() & names["plant"])), ", ".join(lacking)
+            if taken:
+                own = f"it takes {taken}, and the rest stays its own: it may be another car than that of the file"
+            else:
+                own = "the file reaches the other blocks alone"
+            LOG.warning("%s has no parameter %s: %s", plant, lacks, own)
         car = {name: values.get(name, usual[name]) for name in ROAD_LOAD if name not in names["plant"]}
     require(
         problem

@@ -74,6 +74,23 @@ def test_somebody_elses_plant_may_have_parameters_of_its_own(given, tmp_path):
     assert parameters == {"plant.mass": 2200.0, "controller.J_1": 0.09}
 
 
+def test_what_somebody_elses_plant_takes_of_a_file_is_said(given, tmp_path, caplog):
+    plant = build_car(tmp_path / "car")
+    (tmp_path / "car.toml").write_text("m = 2200\nJ_1 = 0.09\n", encoding="utf-8")
+    given("--vehicle", str(tmp_path / "car.toml"), plant=plant)
+    assert "has no parameter J_1, c_slip: it takes m, and the rest stays its own: it may be another car" in caplog.text
+
+
+def test_gains_are_missed_where_a_controller_has_some_and_the_file_is_there(given, tmp_path, caplog):
+    (tmp_path / "car.toml").write_text("m = 2200\n", encoding="utf-8")
+    given("--vehicle", str(tmp_path / "car.toml"), controller=str(build_relay(tmp_path, SMALLEST_CONTROLLER)))
+    with pytest.raises(ParameterFileError, match="there is no such file"):
+        given("--vehicle", str(tmp_path / "none.toml"))
+    assert "the gains of the default car" not in caplog.text
+    given("--vehicle", str(tmp_path / "car.toml"))
+    assert "the gains of the default car" in caplog.text
+
+
 def test_a_parameter_of_the_same_name_in_another_unit_is_refused_unless_it_is_mapped(given, tmp_path):
     plant = build_car(tmp_path / "car", m=("m", "t", 1e3))
     with pytest.raises(

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from driveline.fmus.catalogue import EVERY, SIGNAL_FAULTS
+from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import NO_DAMPING
 from tests.foreign import CAR, SMALLEST_CONTROLLER, build_relay
@@ -30,6 +31,34 @@ TRIP = "Time [s],Velocity [m/s],Motor Torque [Nm]\n" + "".join(
 def blocks(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("smallest")
     return {"plant": build_relay(folder, CAR), "controller": build_relay(folder, SMALLEST_CONTROLLER)}
+
+
+def test_what_the_loop_runs_without_is_said_once_a_command_and_never_with_quiet(
+    blocks: dict[str, Path], native: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    plant = ["--plant", "TwoMassDriveline", "--fmus", str(native.parent)]
+    given = ["simulate", "--manoeuvre", "tipin0", "--controller", str(blocks["controller"]), *plant]
+    for quiet in (["--quiet"], []):
+        warn_once.cache_clear()
+        caplog.clear()
+        assert main([*given, "--output", str(tmp_path / f"out{len(quiet)}"), *quiet]) == 0
+        said = [text for text in caplog.messages if text.endswith("the loop runs without")]
+        assert len(said) == len(set(said)) == (0 if quiet else 5)
+
+
+def test_a_block_that_does_not_fit_gets_the_command_that_maps_it(blocks: dict[str, Path], capsys: Capsys) -> None:
+    assert main(["simulate", "--controller", str(blocks["plant"])]) == 2
+    told = f"`driveline map {blocks['plant']} --place controller` drafts which of its variables are meant, for --map"
+    assert capsys.readouterr().err.splitlines()[-1] == told
+
+
+def test_a_page_refuses_what_has_no_source_before_anything_is_built(
+    blocks: dict[str, Path], tmp_path: Path, capsys: Capsys
+) -> None:
+    given = ["--plant", str(blocks["plant"]), "--fmus", str(tmp_path / "none"), "--output", str(tmp_path / "x.html")]
+    assert main(["explore", *given]) == 2
+    assert "explore takes FMUs that `driveline build` made from Python" in capsys.readouterr().err
+    assert not (tmp_path / "x.html").exists()
 
 
 @pytest.mark.slow

@@ -150,6 +150,12 @@ def test_a_mapping_is_read_from_text_one_variable_a_name():
         parsed(["plant.v=a", "plant.v=b"])
 
 
+@pytest.mark.parametrize("text", ["ctl.tml", "ctl.toml"])
+def test_a_file_that_is_not_there_is_named(text):
+    with pytest.raises(WiringError, match=rf"there is no file {text}$"):
+        parsed([text])
+
+
 @pytest.mark.parametrize("text", ["plant.T_gear", "T_gear=Shaft.tau", "plant.=x", ".T_gear=x", "plant.T_gear=", "=x"])
 def test_another_form_of_mapping_is_refused(text):
     with pytest.raises(WiringError, match=r"is not of the form plant\.T_gear=Shaft\.tau"):

@@ -34,6 +34,12 @@ def results(native: Path) -> Results:
     return simulate(TIPIN, folder=native.parent)
 
 
+def test_it_has_the_columns_that_it_has(results: Results) -> None:
+    assert "plant.T_gear" in results
+    assert "T_gear" not in results
+    assert 0.1 in results["time"]
+
+
 def same(found: Results, expected: Results) -> bool:
     return type(found) is Results and found.units == expected.units and np.array_equal(found, expected)
 
