@@ -80,6 +80,7 @@ def run(args: Arguments) -> int:
         )
         results = simulate(drive.manoeuvre, given)
         made.begin()
+        made.found({given.plant_name: results})
         recorded = sensed(results, drive.load.i, wheels, given.seed)
         made.wrote(write_signals(recorded, stem, args.format))
         if args.frames:
