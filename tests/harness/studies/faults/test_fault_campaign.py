@@ -203,7 +203,7 @@ def test_a_campaign_survives_a_process_that_is_killed(injector, settings, tmp_pa
     known = {}
     found = campaign(Dying(injector, settings, tmp_path), range(1, 5), 3, known, workers=2)
     assert (tmp_path / "3").exists()
-    assert found == campaign(FaultRunner(injector, settings), range(1, 5), 3, workers=1) == list(known.values())
+    assert found == campaign(FaultRunner(injector, settings), range(1, 5), 3, {}, workers=1) == list(known.values())
 
 
 def test_an_fmu_that_was_changed_since_is_refused(injector, settings, tmp_path):
