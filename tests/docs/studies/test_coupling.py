@@ -151,10 +151,11 @@ def test_what_one_run_alone_has_and_anything_over_nothing_deviates_without_bound
 ROUNDED = {
     ("TwoMassDriveline", "launch_brake"): {"end_swing": 0.04},
     ("ValidationVehicle", "launch"): {"end_swing": 0.02},
+    ("ValidationVehicle", "launch_brake"): {"end_swing": 0.04},
 }
 """Where the resolver rounds the motor speed otherwise with the larger step, by 0.1 rad/s in single samples from 5.95
 and from 5.10 s on, and what that may make of the swing that is left at the end, 0.9 and 0.13 N.m. From 0.5 ms on it
-rounds the same."""
+rounds the same. On the vehicle that is braked the fade with slip, of wheels that stop, adds to it: 3 % of 0.058."""
 
 
 @pytest.mark.parametrize("manoeuvre", ["tipin15", "launch", "launch_brake", "hill_hold"])

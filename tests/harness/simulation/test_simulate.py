@@ -99,19 +99,16 @@ def test_the_plant_holds_over_a_step_what_its_inputs_are_in_the_middle_of_it(nat
     assert results["plant.T_brake"] == pytest.approx(1e3 * (results["time"] + 1e-3), abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("plant", "control"), [("TwoMassDriveline", False), ("ValidationVehicle", False), ("ValidationVehicle", True)]
-)
-def test_how_a_car_comes_to_rest_does_not_depend_on_the_communication_step(
-    native: Path, plant: str, control: bool
-) -> None:
+@pytest.mark.parametrize("plant", ["TwoMassDriveline", "ValidationVehicle"])
+def test_how_a_car_comes_to_rest_does_not_depend_on_the_communication_step(native: Path, plant: str) -> None:
     """The teeth go to and fro in the gap until the car is off again: half a step of the brake shows fourfold there.
 
-    With control on the design model one decision of the controller falls otherwise: see ROUNDED of test_coupling.
+    Without control: one decision of the controller, whether wheels slip as they stop, falls otherwise: see ROUNDED of
+    test_coupling.
     """
     stop = MANOEUVRES["launch_brake"]
     coarse, fine = (
-        evaluate(simulate(stop, plant, control=control, step_size=step_size, folder=native.parent), stop)
+        evaluate(simulate(stop, plant, control=False, step_size=step_size, folder=native.parent), stop)
         for step_size in (1e-3, 5e-4)
     )
     assert coarse.end_swing == pytest.approx(fine.end_swing, rel=0.01)
