@@ -238,5 +238,9 @@ def tunable_parameters(fmu: Unpacked) -> Iterator[str]:
         yield from _not_finite(host.advance(host.step_size), "after tunable parameters were set")
 
 
-QUICK_RULES = [replace(BEHAVIOUR_RULES[0], problems=partial(default_experiment, most_steps=STEPS))]
+QUICK_RULES = [
+    replace(rule, problems=partial(default_experiment, most_steps=STEPS))
+    for rule in BEHAVIOUR_RULES
+    if rule.problems is default_experiment
+]
 """The first steps of the default experiment."""

@@ -116,5 +116,9 @@ def states_are_restored(fmu: Unpacked) -> Iterator[str]:
             yield "states and derivatives are not those that were saved"
 
 
-QUICK_EXCHANGE_RULES = [replace(EXCHANGE_RULES[0], problems=partial(default_experiment, share=PART))]
+QUICK_EXCHANGE_RULES = [
+    replace(rule, problems=partial(default_experiment, share=PART))
+    for rule in EXCHANGE_RULES
+    if rule.problems is default_experiment
+]
 """The first part of the default experiment."""
