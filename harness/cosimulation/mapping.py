@@ -54,8 +54,6 @@ def read(path: Path) -> dict[str, str]:
     Raises:
         WiringError: there is no such file, or it is no such mapping.
     """
-    if not path.exists():
-        raise WiringError(f"there is no file {path}")
     try:
         entries = toml_entries(path)
     except (OSError, ValueError) as error:

@@ -14,6 +14,8 @@ import pytest
 from driveline.fmus.child_process import output_of, run
 from tests.signals import heed_signals
 
+ROOT = Path(__file__).parents[2]
+
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="other systems tell no program that its parent is gone")
 
 STAND_IN = """#!/bin/sh
@@ -26,7 +28,7 @@ wait
 """Takes a minute, and begins another process, as compilers do."""
 
 CHECK = """
-from driveline.fmus.target import deviations
+from docs.studies import target_deviations as deviations
 deviations.require_packages = lambda *_: None
 deviations.CHECKER = deviations.COMPILER = {program!r}
 deviations.findings({})
@@ -51,7 +53,7 @@ def begun(tmp_path: Path):
         environment = os.environ | {"CC": str(program), "TMPDIR": str(temporary)}
         command = [sys.executable, "-c", code.replace("{program!r}", repr(str(program)))]
         quiet = subprocess.DEVNULL
-        processes.append(subprocess.Popen(command, env=environment, stderr=quiet, preexec_fn=heed_signals))
+        processes.append(subprocess.Popen(command, env=environment, cwd=ROOT, stderr=quiet, preexec_fn=heed_signals))
         wait_until(notes.exists)
         return processes[-1], [int(number) for number in notes.read_text().split()]
 
