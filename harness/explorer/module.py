@@ -196,7 +196,8 @@ def sources_of(interface: Interface) -> dict[str, bytes]:
         }
     if WHOLE not in found or interface.fmi != 2:
         raise DrivelineError(
-            f"{interface.path}: explore takes FMUs that `driveline build` made from Python, whose C source is in them; "
+            f"{interface.path}: a page has loops of FMUs that were built from Python by `driveline build`, "
+            "whose C source is in them; "
             "`driveline compare --report` and `simulate` run every FMU"
         )
     return found

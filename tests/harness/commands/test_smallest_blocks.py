@@ -57,7 +57,7 @@ def test_a_page_refuses_what_has_no_source_before_anything_is_built(
 ) -> None:
     given = ["--plant", str(blocks["plant"]), "--fmus", str(tmp_path / "none"), "--output", str(tmp_path / "x.html")]
     assert main(["explore", *given]) == 2
-    assert "explore takes FMUs that `driveline build` made from Python" in capsys.readouterr().err
+    assert "a page has loops of FMUs that were built from Python by `driveline build`" in capsys.readouterr().err
     assert not (tmp_path / "x.html").exists()
 
 
