@@ -25,7 +25,7 @@ class NoLaw:
     def update(
         self, x: Nothing, motion: Motion, expected: Motion, T_driver: float, T_s: float, p: Nothing
     ) -> tuple[Nothing, Addition]:
-        return x, Addition(damping=0.0, rest=0.0)
+        return x, Addition(damping=0.0, landing=0.0)
 
 
 BLOCK = supervised(

@@ -49,7 +49,7 @@ class Difference:
     ) -> tuple[DifferenceState, Addition]:
         difference = motion.omega_1 - motion.omega_2
         slow = washed_out(x.slow, difference, p.omega_delta, T_s)
-        return DifferenceState(slow), Addition(damping=-p.k_delta * (difference - x.slow), rest=0.0)
+        return DifferenceState(slow), Addition(damping=-p.k_delta * (difference - x.slow), landing=0.0)
 
 
 BLOCK = supervised(

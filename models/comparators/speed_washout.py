@@ -54,7 +54,7 @@ class Washout:
         g = 0.5 * p.omega_v * T_s
         fast = (motion.omega_1 - x.slow - (2.0 * p.zeta_v + g) * x.steady) / (1.0 + 2.0 * p.zeta_v * g + g * g)
         slow = x.slow + 2.0 * g * (x.steady + g * fast)
-        return WashoutState(slow, x.steady + 2.0 * g * fast), Addition(damping=-p.k_v * fast, rest=0.0)
+        return WashoutState(slow, x.steady + 2.0 * g * fast), Addition(damping=-p.k_v * fast, landing=0.0)
 
 
 BLOCK = supervised(

@@ -42,7 +42,7 @@ def update(
 ) -> tuple[FeedbackState, Addition]:
     ahead = Motion(*(now + p.T_pred / T_s * (then - now) for now, then in zip(motion, expected, strict=True)))
     changing = fed_back(ahead, p)
-    return FeedbackState(washed_out(x.washout, changing, p.omega_w, T_s)), Addition(x.washout - changing, rest=0.0)
+    return FeedbackState(washed_out(x.washout, changing, p.omega_w, T_s)), Addition(x.washout - changing, landing=0.0)
 
 
 def fed_back(motion: Motion, p: Parameters) -> float:

@@ -166,7 +166,7 @@ def update(
         afloat=afloat,
         withheld=left * withheld,
     )
-    return x, Addition(damping=full, rest=damping - full + shape - withheld)
+    return x, Addition(damping=full, landing=damping - full + shape - withheld)
 
 
 def in_gap(motion: Motion) -> bool:

@@ -30,7 +30,9 @@ class Addition(NamedTuple):
     """What a law adds to the driver's demand."""
 
     damping: Annotated[float, Real("N.m", "torque against the oscillation, whose half swings are counted")]
-    rest: Annotated[float, Real("N.m", "the rest: shape of the demand, soft landing, less damping where wheels slip")]
+    landing: Annotated[
+        float, Real("N.m", "what else changes the demand: its shape, a soft landing, less damping where wheels slip")
+    ]
 
 
 class Part(Protocol):

@@ -76,7 +76,7 @@ class Supervised(Generic[E, L]):
         swings = oscillation.update(x.swings, share * damping, T_driver - (x.T_ref - x.T_damp), counts, T_S, p)
         share = share * oscillation.share(swings)
         fading = level / maximum(x.level, T_S / p.t_fade) * x.T_damp
-        added = limited(where(trusted, share * (damping + adding.rest), fading), T_driver, p)
+        added = limited(where(trusted, share * (damping + adding.landing), fading), T_driver, p)
         T_ref = clip(T_driver + added, -p.T_max, p.T_max)
 
         return x._replace(

@@ -42,7 +42,7 @@ class Washout:
         self, x: WashoutState, motion: Motion, expected: Any, T_driver: float, T_s: float, p: WashoutParameters
     ) -> tuple[WashoutState, Addition]:
         slow = washed_out(x.slow, motion.omega_1, p.omega_v, T_s)
-        return WashoutState(slow), Addition(damping=-p.k_v * (motion.omega_1 - x.slow), rest=0.0)
+        return WashoutState(slow), Addition(damping=-p.k_v * (motion.omega_1 - x.slow), landing=0.0)
 
 
 OTHER = supervised("PlainWashout", "with the plainest law", __name__, measured_speeds, Washout())

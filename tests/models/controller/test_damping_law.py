@@ -89,7 +89,7 @@ def test_a_change_of_the_demand_is_shaped_where_the_wheels_do_not_slip(slip: flo
     x, torques = start(motion, 10.0, p), []
     for _ in range(4):
         x, torque = update(x, motion, motion, 26.0, T_S, p)
-        torques.append(torque.rest)
+        torques.append(torque.landing)
     once, twice = (16.0, 8.0, 4.0, 2.0), (0.0, 8.0, 8.0, 6.0)
     assert torques == [share * (0.5 * a - 0.25 * b) for a, b in zip(once, twice, strict=True)]
 
