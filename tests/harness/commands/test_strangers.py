@@ -58,7 +58,7 @@ def test_a_stranger_that_exits_is_one_line(drive, tmp_path, command):
 def test_a_run_that_a_stranger_ends_has_no_metrics_and_one_of_less_than_200_ms_no_files(
     native, tmp_path, capsys, command, last
 ):
-    does = {"IN_DO_STEP": f"if (time > {last - 5e-4}) return 2"}
+    does: dict[str, Any] = {"IN_DO_STEP": f"if (time > {last - 5e-4}) return 2"}
     does["IN_GET_BOOLEAN_STATUS"] = "if (kind == 3) { *value = 1; return 0; }"
     plant, out = build_stranger(tmp_path, **does), tmp_path / "out"
     words = [*COMMANDS[command], "--plant", plant, "--fmus", native.parent, "--output", out]

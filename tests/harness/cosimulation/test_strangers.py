@@ -138,7 +138,8 @@ def test_the_rows_up_to_the_end_that_an_fmu_asks_for_are_the_result(tmp_path, ma
 
 
 def test_an_fmu_that_ends_the_run_in_its_first_step_is_named(tmp_path):
-    ends = {"IN_DO_STEP": "return 2", "IN_GET_BOOLEAN_STATUS": "if (kind == 3) { *value = 1; return 0; }"}
+    ends: dict[str, Any] = {"IN_DO_STEP": "return 2"}
+    ends["IN_GET_BOOLEAN_STATUS"] = "if (kind == 3) { *value = 1; return 0; }"
     system = System({"car": build_stranger(tmp_path, **ends)})
     with pytest.raises(RunEnded, match=r"^car \(stranger\.fmu\) ended the run in its first step: there is nothing to"):
         run(system, Experiment(0.3))

@@ -32,8 +32,8 @@ def track(
     v: ArrayLike, T_driver: ArrayLike = 0.0, slope: float = 0.0, interval: float = 0.1, samples: int = 400
 ) -> Track:
     """A drive of constant slope with these speeds and torques."""
-    v, T_driver, slope = (np.broadcast_to(x, samples).astype(float) for x in (v, T_driver, slope))
-    return Track("drive", interval, np.arange(samples) * interval, v, T_driver, slope)
+    speeds, torques, slopes = (np.broadcast_to(x, samples).astype(float) for x in (v, T_driver, slope))
+    return Track("drive", interval, np.arange(samples) * interval, speeds, torques, slopes)
 
 
 def test_a_steady_drive_needs_what_the_motor_leaves_over_and_more_speed_the_mass():
