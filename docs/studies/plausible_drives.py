@@ -38,6 +38,10 @@ STRIDES = (1, 50)
 """Samples of the controller from one of the recording to the next: 2 ms and 0.1 s."""
 
 
+UNITS, STEPS = (1.0, 3.6, 30.0 / np.pi), (1.0, 0.1, 0.0625)
+"""What signals of the SI are multiplied by in files, to be in km/h or rpm, and the resolutions that they have there."""
+
+
 class Spiked(NamedTuple):
     """A channel: how far its loneliest sample leaves its neighbours, over their range, and what is named."""
 
@@ -108,7 +112,8 @@ def sensed(results: np.ndarray) -> Iterator[Channel]:
 def spiked(channel: Channel) -> Spiked:
     """What the rules see in a channel."""
     lone = max((float(ratio.max(initial=0.0)) for _, ratio in excursions(channel)), default=0.0)
-    named = len(list(spikes(channel))) + int(coded(channel.values).any()) + int(coded(channel.values.round(1)).any())
+    written = (np.round(factor * channel.values / step) * step for factor, step in product(UNITS, STEPS))
+    named = len(list(spikes(channel))) + sum(bool(coded(values).any()) for values in (channel.values, *written))
     return Spiked(channel.quantity, lone, named)
 
 

@@ -25,11 +25,7 @@ SLOWER = Threshold(
 
 def is_slower(channel: Channel, base: Channel) -> bool:
     """Whether a channel has a sample only from time to time."""
-    return _interval(channel) > SLOWER * _interval(base)
-
-
-def _interval(channel: Channel) -> float:
-    return float(np.median(np.diff(channel.time)))
+    return channel.interval > SLOWER * base.interval
 
 
 def aligned(

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
+from .cells import decimal_of, numbers
 from .clock_times import EPOCH, Clock
 from .headings import split
 from .source import Column, RecordingError, Samples, Where, samples
@@ -50,8 +51,10 @@ class ArrowFile:
         elif values.dtype.kind not in "biuf":
             try:
                 values = column.cast("double").to_numpy()  # decimals, flags, texts of numbers
-            except Exception as error:  # pyarrow has many
-                raise RecordingError(f"{self.path}: {self.columns[place].heading} holds no numbers") from error
+            except Exception:  # pyarrow has many
+                texts = [str(cell) for cell in column.to_pylist()]
+                values, unreadable = numbers(texts, decimal_of(texts))
+                return Samples(values, None, Where("row {0}", range(len(values))), unreadable)
         rows = Where("row {0}", range(len(values)))
         return samples(self.path, self.columns[place], values.astype(float), None, rows, begin)
 

@@ -25,6 +25,9 @@ IDENTIFIER = re.compile(r"\b(BO_|SG_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_|BO_TX_BU_)(\s
 STANDARD, EXTENDED = 0x7FF, 0x1FFF_FFFF
 FLAG = 1 << 31
 
+COMPARED = ["start", "length", "byte_order", "is_signed", "scale", "offset", "is_float", "unit", "multiplexer_ids"]
+"""Of a signal that two databases declare."""
+
 
 def known_messages(databases: Sequence[Path]) -> Messages:
     """All that databases declare.
@@ -63,17 +66,7 @@ def _differences(a: Any, b: Any) -> Iterator[str]:
         yield f"signal {plain(name, 60)}, which only one has"
     for name in sorted(signals[0].keys() & signals[1].keys()):
         one, other = (each[name] for each in signals)
-        for what in (
-            "start",
-            "length",
-            "byte_order",
-            "is_signed",
-            "scale",
-            "offset",
-            "is_float",
-            "unit",
-            "multiplexer_ids",
-        ):
+        for what in COMPARED:
             left, right = getattr(one, what), getattr(other, what)
             if left != right:
                 yield f"{what.replace('_', ' ')} of {plain(name, 60)} ({plain(left, 60)} and {plain(right, 60)})"

@@ -55,6 +55,7 @@ class BusLog:
             )
         known = known_messages(databases)
         self._frames, self._begin = _read(path, known, databases)
+        self._end = max(of.times[-1] for of in self._frames.values())
         declared = {kind: the_one(path, known[kind.identifier, kind.extended]) for kind in self._frames}
         self._places = [(kind, declared[kind], signal) for kind in self._frames for signal in declared[kind].signals]
         self.columns: Sequence[Column] = _columns(self._places)
@@ -75,6 +76,8 @@ class BusLog:
             try:
                 content = message.decode(data, decode_choices=False)
             except Exception as error:
+                if k + 1 == len(frames.times) and moment == self._end:
+                    break  # the log was cut off
                 raise RecordingError(
                     f"{self.path}, frame at {moment:g} s: {data.hex(' ') or 'nothing'} is no {message.name} "
                     f"(0x{kind.identifier:X}) of {message.length} bytes: {plain(error, 200)}"
@@ -85,7 +88,9 @@ class BusLog:
                     there[place].append(k)
         time = np.array(frames.times)
         return {
-            place: self._samples(place, np.array(values[place]), time if len(at) == len(time) else time[np.array(at)])
+            place: self._samples(
+                place, np.array(values[place]), time if len(at) == len(time) else time[np.array(at, int)]
+            )
             for place, at in there.items()
         }
 

@@ -5,11 +5,13 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from datetime import UTC
 from io import TextIOBase
+from itertools import chain, islice, pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..base.optional_packages import required
 from ..base.plain_text import plain
+from .cells import is_number
 from .clock_times import DAY, EPOCH, Clock, read_clock
 from .source import RecordingError
 
@@ -32,16 +34,20 @@ class Kind(NamedTuple):
 
 STAMP = re.compile(r"\s*(\d+(?:[.,]\d*)?|[.,]\d+)\s+(.*)", re.DOTALL)
 DATE = re.compile(r"\s*(?:date|begin\s+triggerblock)\s+\w+\s+(.+)", re.IGNORECASE)
+NAMED = re.compile(r"(\d+\s+)\w+(\s+[TR]x\s.*\bID = (\d+)(x?)\s*)", re.IGNORECASE | re.DOTALL)
+"""A frame whose number stands behind too: before it may be its name, such as DCDC."""
+
 EMPTY_FD = re.compile(r"(CANFD\s+\d+\s+[TR]x\s+\S+(?:\s+\S+)?\s+[01]\s+[01]\s+0\s+0)\s*", re.IGNORECASE)
 
 
 def asc_lines(lines: Iterable[str]) -> Iterator[str]:
     """Lines of an ASC log with times from its begin on. Relative ones are each from the line before; those of a second
-    measurement in the file begin again, and go on by the dates of both."""
-    relative, at, begin, shift, block = False, 0.0, None, 0.0, 0.0
+    measurement in the file begin again, and go on by the dates of both. Requests to send are left out."""
+    relative, at, begin, shift, block, number = False, 0.0, None, 0.0, 0.0, "X"
     for line in lines:
         if line.lower().lstrip().startswith("base"):
-            relative = "relative" in line.lower()
+            relative, number = "relative" in line.lower(), "d" if "dec" in line.lower() else "X"
+            line += "\nno internal events logged\n"  # python-can takes the line behind the head for a part of it
         elif found := DATE.match(line):
             date = _seconds(found[1])
             begin = date if begin is None else begin
@@ -53,9 +59,12 @@ def asc_lines(lines: Iterable[str]) -> Iterator[str]:
             if at < last < block:
                 shift = block
                 at = time + shift
-            rest = EMPTY_FD.fullmatch(found[2])
-            line = f"{at:.9f} {f'{rest[1]} 00' if rest else found[2]}"
-        yield line
+            rest, named = EMPTY_FD.fullmatch(found[2]), NAMED.fullmatch(found[2])
+            frame = f"{named[1]}{int(named[3]):{number}}{named[4]}{named[2]}" if named else found[2]
+            line = f"{at:.9f} {f'{rest[1]} 00' if rest else frame}"
+            if " TxRq " in line:
+                continue
+        yield from line.splitlines(keepends=True)
 
 
 def _seconds(text: str) -> float | None:
@@ -69,27 +78,36 @@ def _seconds(text: str) -> float | None:
 
 
 CONSOLE = re.compile(
-    r"\s*\(([^)]+)\)\s+(\S+)\s+(?:[TR]X\s+\S+\s+)?([0-9A-F]+)\s+\[(\d+)\]\s*(.*)", re.IGNORECASE | re.DOTALL
+    r"\s*\(([^)]+)\)\s+(\S+)\s+(?:[TR]X\s+(?:\S\s+){1,2})?([0-9A-F]+)\s+\[(\d+)\]\s*(.*)", re.IGNORECASE | re.DOTALL
 )
 
 
 def candump_lines(lines: Iterable[str]) -> Iterator[str]:
-    """Lines as `candump -l` writes them, of those and of what it prints."""
-    for line in lines:
+    """Lines as `candump -l` writes them, of those and of what it prints. Times that often go back, or stay behind 0,
+    are each from the line before; those of a coarse clock only stay now and then."""
+    begin = [*islice(lines := iter(lines), 100)]
+    stamps = [found[1] for found in map(CONSOLE.fullmatch, begin) if found and is_number(found[1])]
+    steps = [float(b) - float(a) for a, b in pairwise(stamps)]
+    steady = len(steps) > 1 and not any(steps[1:]) and float(stamps[0]) == 0.0
+    relative, at = steady or 10 * sum(step < 0.0 for step in steps) > len(stamps), 0.0
+    for line in chain(begin, lines):
+        if line.startswith("#"):
+            continue
         if found := CONSOLE.fullmatch(line):
             data = found[5].partition("'")[0]
             data = "R" if data.startswith("remote") else data.replace(" ", "").strip()
             mark = "##0" if len(found[4]) > 1 else "#"
             clock = read_clock(found[1])
-            time = clock.second + DAY * ((clock.day or EPOCH) - EPOCH) if clock else float(found[1])
+            time = clock.second + DAY * ((clock.day or EPOCH) - EPOCH) if clock else at * relative + float(found[1])
+            at = time
             yield f"({time:.6f}) {found[2]} {found[3]}{mark}{data}\n"
         else:
             yield line
 
 
 BLF = re.compile(rb"LOGG")
-ASC = re.compile(rb"(\xef\xbb\xbf)?\s*(date [^\n]*\n\s*)?base\s+(hex|dec)", re.IGNORECASE)
-CANDUMP = re.compile(rb"\s*\([-: \d]+\.\d+\)\s+\S+\s+(\S+\s+){0,2}[0-9A-Fa-f]+(#|\s+\[)")
+ASC = re.compile(rb"(\xef\xbb\xbf)?\s*(//[^\n]*\n\s*)*(date [^\n]*\n\s*)?base\s+(hex|dec)", re.IGNORECASE)
+CANDUMP = re.compile(rb"\s*(#[^\n]*\n\s*)*\([-: \d]+\.\d+\)\s+\S+\s+(\S+\s+){0,3}[0-9A-Fa-f]+(#|\s+\[)")
 
 LOGS = (
     Kind("BLF", BLF, "BLFReader"),
@@ -127,14 +145,29 @@ DATED = 1e8
 
 
 class Lines(TextIOBase):
-    """A text whose lines are made as they are read."""
+    """A text whose lines are made as they are read.
+
+    Attributes:
+        cut_off: whether the last that was read has no end.
+    """
 
     def __init__(self, lines: Iterator[str]) -> None:
         super().__init__()
         self._lines = lines
+        self.cut_off = False
 
     def __next__(self) -> str:
-        return next(self._lines)
+        line = next(self._lines)
+        self.cut_off = not line.endswith("\n")
+        return line
+
+    def read_by(self, reader: Iterable[Any]) -> Iterator[Any]:
+        """What a reader finds in them, up to a last line that was cut off."""
+        try:
+            yield from reader
+        except ValueError:
+            if not self.cut_off:
+                raise
 
 
 @contextmanager
@@ -151,7 +184,8 @@ def messages(path: Path) -> Iterator[Iterable[Any]]:
                 yield log
         else:
             with path.open(encoding="utf-8-sig", errors="replace") as text:
-                yield reader(Lines(kind.lines(text)))
+                lines = Lines(kind.lines(text))
+                yield lines.read_by(reader(lines))
     except (RecordingError, MemoryError):
         raise
     except Exception as error:

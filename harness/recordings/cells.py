@@ -9,30 +9,26 @@ import numpy as np
 from ...fmus.written_numbers import real
 
 SIGNS = str.maketrans(
-    dict.fromkeys("−–‒﹣－", "-") | {"＋": "+", "\N{NO-BREAK SPACE}": " ", "\N{NARROW NO-BREAK SPACE}": " "}
+    dict.fromkeys("−–‒—‐‑⁻﹣－\N{SOFT HYPHEN}", "-")
+    | dict.fromkeys("\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}\N{THIN SPACE}\N{FIGURE SPACE}", " ")
+    | dict.fromkeys("“”„‟", '"')
+    | {"＋": "+"}
 )
-"""Of a true minus sign, and what stands for one."""
+"""Of a true minus sign, and what stands for one; of blanks and quotes of typesetters."""
+
+NEGATIVE = re.compile(r"\((?P<bracketed>[\d.,]+)\)|(?P<before>[\d.,]+)-|-\s+(?P<apart>[\d.,]+)|\+\s+(?P<plus>[\d.,]+)")
+"""As accountants and machines of theirs write it, and signs that stand apart."""
 
 WORDS = """
     - -- --- ---- . ? ?? ??? # na n/a n.a. n.a nan -nan +nan nan(ind) -nan(ind) null (null) <null> \\n <na> nat none nil
     nv n/v k.a. void invalid missing <missing> undefined undef n.def. unavailable sna nodata no_data ungültig
     --.- -.- .. err error fehler bad timeout overflow ovr #ovr #inv
-    #n/a #na #nv #div/0! offline
+    #n/a #na #nv #div/0! offline novalue no_value not_available
 """
 
-EMPTY = frozenset(WORDS.split()) | {
-    *(
-        "",
-        "no data",
-        "not available",
-        "no value",
-        "signal not available",
-        "not a number",
-        "k. a.",
-        "bad input",
-        "i/o timeout",
-    )
-}
+PHRASES = "no data|not available|no value|signal not available|not a number|k. a.|bad input|i/o timeout"
+
+EMPTY = frozenset(("", *WORDS.split(), *PHRASES.split("|")))
 """What loggers and spreadsheets write where there is no value, in small letters."""
 
 SPELLINGS = sorted({spelling for word in EMPTY for spelling in (word, word.upper(), word.title(), word.capitalize())})
@@ -42,7 +38,7 @@ NO_NUMBER = re.compile(r"[+-]?(1\.#(qnan|snan|ind|nan)0*|nan\(\w*\))|#\w+[!?]|[-
 """As libraries of C print it, errors of spreadsheets, and what displays show."""
 
 NUMBER = re.compile(
-    r"[+-]?(\d+[.,]?\d*|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE
+    r"[+-]?(\d+[.,]?\d*|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+|d[+-]\d+)?", re.ASCII | re.IGNORECASE
 )
 
 GROUPED = {
@@ -54,6 +50,8 @@ GROUPED = {
 THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}(\1\d{3})*", re.ASCII)
 """Numbers that are whole in one country and have decimals in another."""
 
+NO_DIGITS = str.maketrans("", "", "0123456789")
+
 TRUTHS = {"true": 1.0, "false": 0.0}
 """Of a column that has nothing else."""
 
@@ -64,7 +62,10 @@ TEXT = re.compile(r"""=?(["'])(?P<inner>.*)\1|'(?P<marked>[^']*)""", re.DOTALL)
 
 def cleaned(cell: str) -> str:
     """Without blanks and quotes around it, and with plain signs."""
-    return unquoted(cell.translate(SIGNS).strip())
+    text = unquoted(cell.translate(SIGNS).strip())
+    if found := NEGATIVE.fullmatch(text):
+        return ((found["plus"] and "+") or "-") + found[found.lastgroup or 0]
+    return text
 
 
 def unquoted(text: str) -> str:
@@ -84,15 +85,21 @@ def is_missing(cell: str) -> bool:
     return text in EMPTY or NO_NUMBER.fullmatch(text) is not None
 
 
-def decimal_of(cells: Sequence[str]) -> str:
-    """Point or comma: what most numbers have last. A mark before three digits counts where there is no other."""
-    there = [text for text in map(cleaned, cells) if NUMBER.fullmatch(text)]
-    for among in ([text for text in there if not THOUSANDS.fullmatch(text)], there):
-        commas = sum(text.rfind(",") > text.rfind(".") for text in among)
-        points = sum(text.rfind(".") > text.rfind(",") for text in among)
-        if commas != points:
-            return "," if commas > points else "."
-    return "."
+def decimal_of(*columns: Sequence[str]) -> str:
+    """Point or comma: what most numbers have last. A mark before three digits counts where there is no other: as one of
+    thousands in a column that has whole numbers below thousand without."""
+    there = [[text for text in map(cleaned, cells) if NUMBER.fullmatch(text)] for cells in columns]
+    sure = [text for texts in there for text in texts if not THOUSANDS.fullmatch(text)]
+    commas, points = (sum(text.rfind(one) > text.rfind(other) for text in sure) for one, other in (",.", ".,"))
+    if commas != points:
+        return "," if commas > points else "."
+    for texts in there:
+        marks = [text.translate(NO_DIGITS)[-1:] for text in texts if THOUSANDS.fullmatch(text)]
+        whole = [text.lstrip("+-") for text in texts if not THOUSANDS.fullmatch(text)]
+        grouped = bool(whole) and all(len(text) < 4 for text in whole)
+        commas += sum((mark == ",") != grouped for mark in marks)
+        points += sum((mark == ".") != grouped for mark in marks)
+    return "," if commas > points else "."
 
 
 def numbers(cells: Sequence[str], decimal: str) -> tuple[np.ndarray, dict[int, str]]:
@@ -121,5 +128,5 @@ def _number(cell: str, decimal: str) -> float | None:
         if "." in text:
             return None
         text = text.replace(",", ".")
-    value = real(text)
+    value = real(re.sub("[dD](?=[+-])", "e", text))  # as Fortran writes double precision
     return value if value is not None and isfinite(value) else None

@@ -142,7 +142,7 @@ def spikes(channel: Channel) -> Iterator[Finding]:
         odd[at[ratio > LONE]] = True
     if channel.unit == "m/s" and len(x) >= LEAST:
         for width in range(1, WIDEST + 1):
-            odd |= _off(x, width) > max(SPIKE, ACCELERATION * _interval(channel) * width)
+            odd |= _off(x, width) > max(SPIKE, ACCELERATION * channel.interval * width)
     at = np.flatnonzero(odd)
     if len(at):
         k, unit = int(at[0]), channel.file_unit
@@ -160,14 +160,10 @@ def excursions(channel: Channel) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         return
     smallest = max(LARGE * float(np.ptp(_smooth(x, WIDEST))), _smallest(channel))
     for width in range(1, WIDEST + 1):
-        if width == 1 or width * _interval(channel) <= BRIEF * (1.0 + 1e-6):
+        if width == 1 or width * channel.interval <= BRIEF * (1.0 + 1e-6):
             off = _off(x, width)
             at = np.flatnonzero(off > smallest)
             yield at, off[at] / np.maximum(_range_around(x, at, width), 1e-9 * off[at])
-
-
-def _interval(channel: Channel) -> float:
-    return float(np.median(np.diff(channel.time)))
 
 
 def _off(x: np.ndarray, width: int) -> np.ndarray:

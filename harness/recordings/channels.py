@@ -10,13 +10,13 @@ import numpy as np
 
 from ..base.plain_text import plain
 from .clock_times import EXAMPLES, Clock
-from .column_choice import Choice, Chooser
+from .column_choice import Choice, Chooser, doubled
 from .file_units import FileUnit
 from .format_detection import opened
 from .missing_values import FILLED, coded, holes
 from .quantities import QUANTITIES, aliases
 from .source import Column, Kept, RecordingError, Samples, not_finite
-from .time_base import MOST, WHOLE, Break, Cut, around, clean_pieces, spread, time_breaks, typed
+from .time_base import MOST, WHOLE, Break, Cut, around, clean_pieces, interval_of, spread, time_breaks, typed
 
 LEAST = 2
 """Samples that every recording has."""
@@ -59,6 +59,11 @@ class Channel:
     file_unit: FileUnit
     clock: str = "time"
     lacks: Sequence[Lack] = ()
+
+    @property
+    def interval(self) -> float:
+        """Median step of its times in s."""
+        return interval_of(self.time)
 
     def at(self, kept: np.ndarray, time: np.ndarray) -> "Channel":
         """Some of its samples, by their indices, and their times."""
@@ -156,15 +161,22 @@ class Channels:
         """The channels, and where they cannot be used."""
         if missing := self.missing(*quantities):
             raise self.absence(missing)
-        clock = [] if self._source.own_time else [self._chooser.needed("time")]
-        choices = [*clock, *(self._chooser.needed(quantity) for quantity in quantities)]
-        samples = self._source.read([choice.place for choice in choices])
-        rows = self._rows(clock[0], samples[0]) if clock else None
-        breaks = list(rows.breaks) if rows else []
+        times = [] if self._source.own_time else self._chooser.times()
+        choices = [self._chooser.needed(quantity) for quantity in quantities]
+        first = next(iter(times), None)
+        before = [next((time for time in reversed(times) if time.place < each.place), first) for each in choices]
+        clocks = [time for time in times if time in before]
+        samples = self._source.read([choice.place for choice in (*clocks, *choices)])
+        if len({one.begin is None for one in samples[: len(clocks)]}) > 1:  # what one calls 0 the other does not
+            raise doubled(self._source, "time", [clock.column.heading for clock in clocks])
+        since = next((one.begin for one in samples[: len(clocks)]), None)
+        rows = {time: self._rows(time, one, since) for time, one in zip(clocks, samples, strict=False)}
+        breaks = [each for of in rows.values() for each in of.breaks]
         channels: dict[str, Channel] = {}
-        for choice, one in zip(choices[len(clock) :], samples[len(clock) :], strict=True):
+        for choice, clock, one in zip(choices, before, samples[len(clocks) :], strict=True):
             if np.isfinite(one.values).any() or choice.quantity not in optional:
-                channel, more = self._channel(choice, one, rows, [each.time for each in channels.values()], drawn)
+                known = [each.time for each in channels.values()]
+                channel, more = self._channel(choice, one, rows[clock] if clock else None, known, drawn)
                 channels[choice.quantity] = channel
                 breaks += more
         for together in _by_time(channels.values()):
@@ -173,17 +185,23 @@ class Channels:
         breaks += [each for channel in channels.values() for each in _beyond_limit(self.path, channel)]
         return channels, breaks
 
-    def _rows(self, choice: Choice, samples: Samples) -> Rows:
-        """The rows; what some write below the last time is none of them."""
+    def _rows(self, choice: Choice, samples: Samples, since: Clock | None) -> Rows:
+        """The rows; what some write below the last time is none of them.
+
+        Args:
+            since: what the clock of all says at 0.
+        """
         time, column = choice.factor * samples.values, choice.column
+        if samples.begin and since:
+            time = time + samples.begin.after(since, 0.0)
         there = np.flatnonzero(np.isfinite(time))
         if not len(there):
             raise self._no_numbers(column, samples)
-        kept = there[self._inside(time[there], samples.begin)]
+        kept = there[self._inside(time[there], since)]
         within = range(kept[0], kept[-1]) if len(kept) else ()
         odd = {k: text for k, text in samples.unreadable.items() if k in within}
         breaks = self._unreadable(column, samples.where, odd, kept, time, f", nor a time such as {EXAMPLES}")
-        return Rows(time, samples.begin, column.heading, breaks)
+        return Rows(time, since, column.heading, breaks)
 
     def _inside(self, time: np.ndarray, begin: Clock | None) -> np.ndarray:
         """Which times are in the part that is read."""

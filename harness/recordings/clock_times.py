@@ -3,7 +3,9 @@
 import re
 from collections.abc import Sequence
 from datetime import date
+from math import isnan, nan
 from typing import NamedTuple
+from unicodedata import combining, normalize
 
 import numpy as np
 
@@ -14,35 +16,70 @@ EPOCH = date(1970, 1, 1).toordinal()
 
 EXAMPLES = "10:15:30.5 or 2026-11-22T10:15:30.5"
 
-ENGLISH = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
-MONTHS = {name: k for k, name in enumerate(ENGLISH, 1)} | {"mär": 3, "mrz": 3, "mai": 5, "okt": 10, "dez": 12}
-"""By three letters of their names, in English and German."""
+NAMES = """
+    jan|ene|gen feb|fev mar|mrz apr|avr|abr may|mai|mag jun|juin|giu jul|juil|lug aug|aou|ago sep|set oct|okt|ott nov
+    dec|dez|dic
+"""
+MONTHS = {name: k for k, names in enumerate(NAMES.split(), 1) for name in names.split("|")}
+"""By the first letters of their names without accents, in English, German, French, Spanish and Italian."""
 
-INSTANT = re.compile(
-    r"((?P<year>\d{4})(?P<mark>[-/.])(?P<month>\d\d?)(?P=mark)(?P<day>\d\d?)[T ]\s*"
-    r"|(?P<first>\d\d?)(?P<between>[-/.])(?P<second_>\d\d?)(?P=between)(?P<year_>\d{4}|\d\d)[T ,]\s*"
-    r"|(\w+,? )?(?P<day_>\d\d?)[-. ]+(?P<name>[a-zä]{3})[a-z]*[-,. ]+(?P<year__>\d{4})[T ,]\s*"
-    r"|(\w+,? )?(?P<name_>[a-zä]{3})[a-z]*[. ]+(?P<day__>\d\d?),? (?P<year___>\d{4})[T ,]\s*)?"
-    r"(?P<hour>\d\d?)(?P<colon>:?)(?P<minute>[0-5]\d)(?P=colon)(?P<second>[0-5]\d([.,:]\d+)?)"
-    r"\s?(?P<half>[AP]\.?M\.?)?(?P<zone>Z| ?UTC| ?GMT|(?P<ahead>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d))?",
+NAMED = rf"(?P<name>{'|'.join(sorted(MONTHS, key=len, reverse=True))})[a-z]*"
+WEEKDAY = r"(?:[a-z]+[.,]{0,2} +)?"
+
+TIME = re.compile(
+    r"(?P<date>.*?)(?:[T ,:] *)?(?P<hour>\d\d?)(?P<colon>[:h]?)(?P<minute>[0-5]\d)(?:(?P=colon)|m)"
+    r"(?P<second>[0-5]\d(?:[.,:]\d+)?)s? ?(?P<half>[AP]\.?M\.?|vorm\.?|nachm\.?)?"
+    r"(?P<zone>Z| ?UTC| ?GMT| ?(?P<ahead>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d)?)?"
+    r"(?: Uhr| [A-Z]{3,5}|\[[\w/]+\])?(?P<year> \d{4})?",
     re.ASCII | re.IGNORECASE,
 )
-"""ISO 8601 with the time of day, other dates in numbers and with the name of the month, or the time of day alone."""
+"""A time of day, what is before it, the year that C writes behind it; the name of a zone is passed over."""
+
+DATES = tuple(
+    re.compile(form, re.IGNORECASE)
+    for form in (
+        r"(?!\d{1,7}$)(?P<year>\d{4})(?P<mark>[-/.年]?)(?P<month>\d\d?)(?:(?P=mark)|月)(?P<day>\d\d?)日?",
+        r"(?P<first>\d\d?)(?P<mark>[-/.])(?P<second>\d\d?)(?P=mark)(?P<year>\d{4}|\d\d)",
+        rf"{WEEKDAY}(?P<day>\d\d?)[-. ]+{NAMED}[-,. ]+(?P<year>\d{{4}}|\d\d)",
+        rf"{WEEKDAY}{NAMED}[. ]+(?P<day>\d\d?),? (?P<year>\d{{4}})",
+    )
+)
+"""ISO 8601, other dates in numbers, and with the name of the month."""
 
 MINUTES = re.compile(r"(?P<minute>\d+):(?P<second>[0-5]\d[.,]\d+)", re.ASCII)
 """Minutes and seconds with a fraction, without which it could be hours and minutes."""
 
+LENGTHS = {
+    **dict.fromkeys(("d", "day", "days"), DAY),
+    **dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), HOUR),
+    **dict.fromkeys(("m", "min", "mins", "minute", "minutes"), 60.0),
+    **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), 1.0),
+    "ms": 1e-3,
+    "us": 1e-6,
+    "µs": 1e-6,
+    "ns": 1e-9,
+}
+"""Of the parts of a duration, in s."""
+
+PART = re.compile(rf"(\d+\.?\d*(?:e[+-]?\d+)?)\s*({'|'.join(sorted(LENGTHS, key=len, reverse=True))})(?![a-su-zµ])")
 DURATION = re.compile(
-    r"[+-]?\d[\d.,]*\s*(days?\b.*|(h|hr|hrs|hours?|min|minutes?|s|sec|secs|seconds?|ms|us|ns)\b\.?)", re.IGNORECASE
+    rf"(?P<sign>[+-]?)p?(?P<parts>(?:t?{PART.pattern}[\s.]*)*)[t+]?(?P<clock>\d+:[0-5]\d:[0-5]\d(?:\.\d*)?)?"
 )
-"""What pandas reads: `0.1 sec`, `0 days 00:00:00.1`."""
+"""`0.1 sec`, `1 min 2.5 s`, `0 days 00:00:00.1`, and PT0.1S of ISO 8601, in small letters."""
 
 
 class Clock(NamedTuple):
-    """What a clock says: number of the day, None without a date, and seconds within it, in UTC if it has a zone."""
+    """What a clock says.
+
+    Attributes:
+        day: its number, None without a date.
+        second: within it, as it is written.
+        ahead: of UTC, in s; None if no zone is written.
+    """
 
     day: int | None
     second: float
+    ahead: float | None = None
 
     def __str__(self) -> str:
         second = round(self.second, 6)
@@ -52,17 +89,20 @@ class Clock(NamedTuple):
         )
 
     def after(self, begin: "Clock", last: float) -> float:
-        """Seconds from another clock on; without a date within a day of it, before it only if `last` seconds after it
-        this clock has not come yet."""
+        """Seconds from another clock on, by UTC if both have a zone; without a date within a day of it, before it only
+        if `last` seconds after it this clock has not come yet."""
+        within = self.second - begin.second
+        if self.ahead is not None and begin.ahead is not None:
+            within -= self.ahead - begin.ahead
         if self.day is not None and begin.day is not None:
-            return DAY * (self.day - begin.day) + self.second - begin.second
-        later = (self.second - begin.second) % DAY
+            return DAY * (self.day - begin.day) + within
+        later = within % DAY
         return later - DAY if later > last and later > DAY / 2 else later
 
 
 def is_clock_time(text: str) -> bool:
     """Whether it is a time of day or a duration."""
-    return bool(read_clock(text) or MINUTES.fullmatch(text.strip()) or DURATION.fullmatch(text.strip()))
+    return bool(read_clock(text) or MINUTES.fullmatch(text.strip()) or not isnan(_duration(text)))
 
 
 def read_clock(text: str, month_first: bool = True) -> Clock | None:
@@ -71,30 +111,34 @@ def read_clock(text: str, month_first: bool = True) -> Clock | None:
     Args:
         month_first: in a date in numbers with slashes.
     """
-    found = INSTANT.fullmatch(text.strip())
+    if not text.isascii():
+        text = "".join(letter for letter in normalize("NFKD", text) if not combining(letter))
+    found = TIME.fullmatch(" ".join(text.split()))
     if not found:
         return None
     hour = int(found["hour"])
     if found["half"]:
-        hour = hour % 12 + 12 * (found["half"][0].upper() == "P")
-    ahead = 0.0
+        hour = hour % 12 + 12 * (found["half"][0].upper() in "PN")
+    ahead = 0.0 if found["zone"] else None
     if found["ahead"]:
-        ahead = (-1.0 if found["ahead"] == "-" else 1.0) * (HOUR * int(found["hours"]) + 60.0 * int(found["minutes"]))
+        ahead = float(found["ahead"] + "1") * (HOUR * int(found["hours"]) + 60.0 * int(found["minutes"] or 0))
     second = float(found["second"].replace(",", ".").replace(":", "."))
-    within = HOUR * hour + 60.0 * int(found["minute"]) + second - ahead
-    year = found["year"] or found["year_"] or found["year__"] or found["year___"]
-    if not year:
-        return Clock(None, within)
-    if named := found["name"] or found["name_"]:
-        month, day = MONTHS.get(named.lower(), 0), found["day_"] or found["day__"]
-    elif found["month"]:
-        month, day = found["month"], found["day"]
-    else:
-        month, day = found["first"], found["second_"]
-        if found["between"] == "." or not month_first:
+    within = HOUR * hour + 60.0 * int(found["minute"]) + second
+    written = found["date"] + (found["year"] or "")
+    if not written:
+        return Clock(None, within, ahead)
+    dated = next((each.groupdict() for form in DATES if (each := form.fullmatch(written))), None)
+    if dated is None:
+        return None
+    if "first" in dated:
+        month, day = (dated[each] for each in ("first", "second"))
+        if dated["mark"] == "." or not month_first:
             month, day = day, month
+    else:
+        month, day = dated.get("month") or MONTHS[dated["name"].lower()], dated["day"]
+    year = int(dated["year"]) + 2000 * (len(dated["year"]) == 2)
     try:
-        return Clock(date(int(year) + 2000 * (len(year) == 2), int(month), int(day)).toordinal(), within)
+        return Clock(date(year, int(month), int(day)).toordinal(), within, ahead)
     except ValueError:
         return None  # the 30th of February
 
@@ -113,10 +157,21 @@ def seconds(texts: Sequence[str]) -> tuple[np.ndarray, Clock | None]:
         found = [MINUTES.fullmatch(text.strip()) for text in texts]
         values = [60.0 * int(f["minute"]) + float(f["second"].replace(",", ".")) if f else np.nan for f in found]
         return _unwrapped(np.array(values), HOUR), None
-    import pandas as pd  # takes most of a second
+    return np.array([_duration(text) for text in texts]), None
 
-    spans = pd.to_timedelta([text.strip().replace(",", ".") for text in texts], errors="coerce")
-    return spans.total_seconds().to_numpy(dtype=float), None
+
+def _duration(text: str) -> float:
+    """In s, NaN of what is none."""
+    found = DURATION.fullmatch(text.strip().casefold().replace(",", ".").replace("\u03bc", "µ"))
+    parts = PART.findall(found["parts"]) if found else []
+    if not found or not (parts or found["clock"]) or [unit for _, unit in parts] == ["m"]:  # which are metres
+        return nan
+    length = sum(float(number) * LENGTHS[unit] for number, unit in parts) * (-1.0 if found["sign"] == "-" else 1.0)
+    if found["clock"]:
+        hour, minute, second = map(float, found["clock"].split(":"))
+        within = HOUR * hour + 60.0 * minute + second
+        length += -within if found["sign"] == "-" and not parts else within
+    return length
 
 
 def _orders(first: str) -> tuple[bool, ...]:
@@ -133,11 +188,9 @@ def _since(clocks: Sequence[Clock | None]) -> tuple[np.ndarray, Clock | None]:
     if begin is None:
         return np.full(len(clocks), np.nan), None
     alike = [clock if clock and (clock.day is None) == (begin.day is None) else None for clock in clocks]
-    within = np.array([clock.second - begin.second if clock else np.nan for clock in alike])
     if begin.day is None:
-        return _unwrapped(within, DAY), begin
-    days = np.array([clock.day - begin.day if clock and clock.day else 0 for clock in alike], dtype=float)
-    return DAY * days + within, begin
+        return _unwrapped(np.array([each.after(begin, -DAY) if each else np.nan for each in alike]), DAY), begin
+    return np.array([clock.after(begin, 0.0) if clock else np.nan for clock in alike]), begin
 
 
 def _unwrapped(times: np.ndarray, period: float) -> np.ndarray:

@@ -1,15 +1,17 @@
 """Which column of a file holds which quantity."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from shlex import quote
+
+import numpy as np
 
 from ...fmus.unit_conversion import converts, factor, known
 from ..base.known_names import nearest
 from ..base.plain_text import plain
 from .clock_times import EXAMPLES
-from .headings import key, split, without_brackets
-from .quantities import BY_UNIT, QUANTITIES, Aliases, example
+from .headings import key, last_part, split, without_brackets
+from .quantities import ANOTHER, BY_UNIT, OF_MANY, QUANTITIES, Aliases, example
 from .source import Column, RecordingError, Source
 
 NAMES_SHOWN = 3
@@ -90,20 +92,52 @@ class Chooser:
         """The column of a quantity, None if there is none; else as `needed`."""
         if quantity in self.given:
             return self._given(quantity, self.given[quantity])
+        meant = self._meant(quantity)
+        return (
+            self._one(quantity, meant[:1] if self._each_has_its_own(quantity, meant) else meant, 1.0) if meant else None
+        )
+
+    def times(self) -> list[Choice]:
+        """The columns of time: several if each holds for those behind it, up to the next.
+
+        Raises:
+            RecordingError: as of `needed`.
+        """
+        meant = [] if "time" in self.given else self._meant("time")
+        several = self._each_has_its_own("time", meant)
+        return [self._one("time", [each], 1.0) for each in meant] if several else [self.needed("time")]
+
+    def _each_has_its_own(self, quantity: str, found: Sequence[Place]) -> bool:
+        """Whether columns are times of one name, each before others."""
+        places = [*(place for place, _ in found), len(self.source.columns)]
+        names = {key(self.source.columns[place].name) for place, _ in found}
+        return quantity == "time" and len(names) == 1 and bool((np.diff(places) > 1).all())
+
+    def _meant(self, quantity: str) -> Sequence[Place]:
+        """The columns that may hold a quantity, by their names and units."""
         sure, open_ = self._named(self.names[quantity]), self._named(BY_UNIT.get(quantity, ()))
         unitless = [(place, unit) for place, unit in sure if unit is None]
-        meant = _fitting(quantity, sure) or unitless or _fitting(quantity, open_) or sure
-        return self._one(quantity, meant, 1.0) if meant else None
+        return _fitting(quantity, sure) or unitless or _fitting(quantity, open_) or sure or self._below(quantity)
 
     def _named(self, names: Sequence[str]) -> list[Place]:
         """The columns that have one of the names."""
         keys = {key(name) for name in names}
+        return [(place, unit) for place, name, unit in self._readings() if key(name) in keys]
+
+    def _below(self, quantity: str) -> list[Place]:
+        """The columns that have one of its names behind a path."""
+        keys = {key(name) for name in self.names[quantity]} - OF_MANY
         return [
             (place, unit)
-            for place, column in enumerate(self.source.columns)
-            for name, unit in _readings(column)
-            if key(name) in keys
+            for place, name, unit in self._readings()
+            if key(last_part(name)) in keys and not ANOTHER.search(name.removesuffix(last_part(name)))
         ]
+
+    def _readings(self) -> Iterator[tuple[int, str, str | None]]:
+        """Of each column its place, and name and unit as it can be understood."""
+        for place, column in enumerate(self.source.columns):
+            for name, unit in _readings(column):
+                yield place, name, unit
 
     def _given(self, quantity: str, text: str) -> Choice:
         sign = -1.0 if text.startswith("-") else 1.0
@@ -113,9 +147,8 @@ class Chooser:
         name, unit = split(name_given)
         found = found or [
             (place, unit or own)
-            for place, column in enumerate(columns)
-            for name_read, own in _readings(column)
-            if key(name_read) == key(name)
+            for place, name_read, own in self._readings()
+            if key(name_read).removeprefix("-") == key(name)
         ]
         if not found:
             raise RecordingError(
@@ -127,7 +160,7 @@ class Chooser:
     def _one(self, quantity: str, found: Sequence[Place], sign: float) -> Choice:
         columns = self.source.columns
         if len(found) > 1:
-            raise _doubled(self.source, quantity, [columns[k].heading for k, _ in found])
+            raise doubled(self.source, quantity, [columns[k].heading for k, _ in found])
         place, unit = found[0]
         si, factor = self._factor(quantity, columns[place], unit)
         return Choice(quantity, columns[place], place, si, sign * factor, unit or si)
@@ -180,7 +213,7 @@ def _readings(column: Column) -> list[tuple[str, str | None]]:
     return [(column.name, column.unit), *((name, unit) for name, unit in others if known(unit))]
 
 
-def _doubled(source: Source, quantity: str, headings: Sequence[str]) -> RecordingError:
+def doubled(source: Source, quantity: str, headings: Sequence[str]) -> RecordingError:
     """What to say of several columns that could hold a quantity."""
     distinct = [heading for heading in headings if headings.count(heading) == 1]
     if not distinct:

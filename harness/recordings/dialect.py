@@ -9,24 +9,29 @@ from itertools import islice, zip_longest
 from pathlib import Path
 from statistics import median
 
+import numpy as np
+
 from ...fmus.unit_conversion import known
-from .cells import decimal_of, is_missing, is_number, unquoted
+from .cells import decimal_of, is_missing, is_number, numbers, unquoted
 from .clock_times import is_clock_time
 from .source import RecordingError
 
-SEPARATORS = ("\t", ";", ",", "|", " ")
+SEPARATORS = ("\t", ";", ",", "|", "~", "^", "\x1f", " ")
 """Blanks, of any number, separate where nothing else does."""
 
-LOOKED_AT = 100
+LOOKED_AT = 500
 """Rows at the beginning of the file that tell its dialect."""
 
 EXCEL = re.compile(r"sep=(?P<separator>.)\s*\n")
 """A first line that spreadsheets write and obey."""
 
-COMMENT, LINE = re.compile(r"\s*(#+|%+|//+)\s*"), re.compile(r"[-=_+:|*\s]*")
-"""With which a line of names may begin, and a line that only parts others."""
+COMMENT, LINE = re.compile(r"\s*(?P<mark>[#%!;*]+|//+|--+\s|REM\s)\s*"), re.compile(r"[-=_+:|*\s]*")
+"""With which a comment or a line of names may begin, and a line that only parts others."""
 
 TIMES = frozenset(("s", "ms"))
+
+EVEN = 1.2
+"""Longest over shortest step of what is a time, and not a speed that grows."""
 
 Row = tuple[int, list[str]]
 """Number of its last line in the file, and its cells."""
@@ -52,6 +57,23 @@ class Dialect:
     names_line: int
     first_line: int
 
+    def is_note(self, line: str) -> bool:
+        """Whether a line among the numbers is a comment, or the name of an event."""
+        first = line.partition(self.separator)[0]
+        text = line.strip(f"{self.separator} \t")
+        is_row = self.separator in text or text[:1].isdecimal() or is_number(text)
+        return not is_row or is_comment(first, self.separator)
+
+
+def is_comment(first: str, separator: str) -> bool:
+    """Whether a row is one by its first cell. A mark alone, or at a number, may be that of an event in the row; before
+    a blank that separates it is none."""
+    found = COMMENT.match(first)
+    if not found or separator == " ":
+        return found is not None
+    rest = first[found.end("mark") :].rstrip()
+    return bool(rest) and (rest != rest.lstrip() or not is_number(rest))
+
 
 def dialect_of(text: str, path: Path) -> Dialect:
     """Separator: the one with which the first rows have most numbers each. Names: the last row without a number
@@ -69,9 +91,11 @@ def dialect_of(text: str, path: Path) -> Dialect:
     rows = found[separator][1:] if excel else found[separator]
     if not rows:
         raise RecordingError(f"{path} is empty")
-    above, below = _parted(rows)
+    above, below = _parted(rows, separator)
     width = max((len(cells) for _, cells in below), default=0)
     above = [(line, [unquoted(cell.strip()) for cell in _uncommented(cells, width)]) for line, cells in above]
+    if above and _has_index(above[-1][1], below, path):
+        above = [(line, ["", *cells]) for line, cells in above]
     if not above:
         raise RecordingError(f"{path}, line {rows[0][0]}: there is no line of names above the numbers")
     of_units = (k for k in range(len(above) - 1, 0, -1) if _are_units(above[k][1], above[k - 1][1]))
@@ -84,11 +108,36 @@ def dialect_of(text: str, path: Path) -> Dialect:
             f"{path}, line {below[0][0]} has {len(below[0][1])} cells below {_filled(names)} names: the comma parts "
             "cells and decimals; save it with semicolons or decimal points"
         )
-    columns = zip_longest(*(cells for _, cells in below), fillvalue="")
+    columns = list(zip_longest(*(cells for _, cells in below), fillvalue=""))
     firsts = (next((cell for cell in column if not is_missing(cell)), "") for column in columns)
     clocks = tuple(not is_number(cell) and is_clock_time(cell) for cell in firsts)
-    decimal = decimal_of([cell for _, cells in below for cell in cells])
+    decimal = decimal_of(*columns)
     return Dialect(separator, decimal, tuple(names), tuple(units), clocks, names_line, above[-1][0] + 1)
+
+
+def _has_index(names: Sequence[str], rows: Sequence[Row], path: Path) -> bool:
+    """Whether the numbers of the rows stand before them without a name, as R writes them: in quotes, or before a time.
+
+    Raises:
+        RecordingError: they may as well be the first column that has a name, and the last is the one without.
+    """
+    if len(rows) < 2 or any(_filled(cells) != len(names) + 1 for _, cells in rows):
+        return False
+    counted, behind = ([cells[k].strip() for _, cells in rows] for k in (0, 1))
+    first = unquoted(counted[0])
+    if not (first.isascii() and first.isdecimal()):
+        return False
+    if [unquoted(cell) for cell in counted] != [str(k) for k in range(int(first), int(first) + len(rows))]:
+        return False
+    if counted[0] != first or all(map(is_clock_time, behind)):
+        return True
+    steps = np.diff(numbers(behind, decimal_of(behind))[0])
+    if not 0.0 < steps.max() < EVEN * steps.min():
+        raise RecordingError(
+            f"{path}, line {rows[0][0]} has {len(names) + 1} cells below {len(names)} names, and the first counts the "
+            "rows: it may be any that lacks a name; name them all"
+        )
+    return True
 
 
 def _is_decimal_too(names: Sequence[str], rows: Sequence[Sequence[str]]) -> bool:
@@ -121,25 +170,39 @@ def _rows(text: str, separator: str, path: Path) -> list[Row]:
 
 
 def _likely(separator: str, rows: Sequence[Row]) -> tuple[float, float]:
-    """Numbers in a row, on average; without any number, cells."""
-    numbers = sum(_numbers(cells) for _, cells in rows) / max(len(rows), 1)
-    return numbers, 0.0 if numbers or separator == " " else sum(len(cells) for _, cells in rows) / max(len(rows), 1)
+    """Numbers in one of the last rows, on average; without any number, cells."""
+    last_rows = _last(rows)
+    numbers = sum(map(_numbers, last_rows)) / max(len(last_rows), 1)
+    return numbers, 0.0 if numbers or separator == " " else sum(map(len, last_rows)) / max(len(last_rows), 1)
+
+
+def _last(rows: Sequence[Row]) -> list[list[str]]:
+    """The cells of the last third of some rows, which is below any head."""
+    return [cells for _, cells in rows[-(1 + len(rows) // 3) :]]
 
 
 def _numbers(cells: Sequence[str]) -> int:
     """How many there are; where there is one, what stands for a missing one counts too."""
     there = sum(map(is_number, cells))
-    return there + sum(map(is_missing, filter(None, cells))) if there else 0
+    return there + sum(is_missing(cell) for cell in cells if cell and cell != ",") if there else 0
 
 
-def _parted(rows: Sequence[Row]) -> tuple[Sequence[Row], Sequence[Row]]:
+def _parted(rows: Sequence[Row], separator: str) -> tuple[Sequence[Row], Sequence[Row]]:
     """The rows above the numbers, and those from the first one after the last of them.
 
     A row of numbers has more than half of the cells that are usual, half of them numbers or more, and so has the row
-    after it. Others above it, such as the rate of the recording, are no names if a number is among them.
+    after it. It begins as most of the last rows do, and not as a comment. Others above it, such as the rate of the
+    recording, are no names if a number is among them.
     """
-    usual = median(_filled(cells) for _, cells in rows)
-    numeric = [2 * _numbers(cells) >= _filled(cells) > 0.5 * usual for _, cells in rows] + [True]
+    last_rows = _last(rows)
+    usual = median(map(_filled, last_rows))
+    begins = 2 * sum(_numbers(cells[:1]) for cells in last_rows) > len(last_rows)
+    numeric = [
+        2 * _numbers(cells) >= _filled(cells) > 0.5 * usual
+        and not is_comment(cells[0], separator)
+        and bool(_numbers(cells[:1]) or is_missing(cells[0]) or not begins)
+        for _, cells in rows
+    ] + [True]
     first = next((k for k in range(len(rows)) if numeric[k] and numeric[k + 1]), len(rows))
     last = max((k for k in range(first) if not _numbers(rows[k][1])), default=-1)
     if first == len(rows):
@@ -152,9 +215,9 @@ def _filled(cells: Sequence[str]) -> int:
 
 
 def _are_units(cells: Sequence[str], names: Sequence[str]) -> bool:
-    """Whether a row below names holds units, for each name one or nothing. If one is that of a time, a third of
-    them may be none, as `enum`."""
+    """Whether a row below names holds units, for each name one or nothing. If one is that of a time, two
+    thirds of them may be none, as `enum`."""
     units = {k: unit for k, cell in enumerate(cells) if (unit := cell.strip(" []()"))}
     named = all(k < len(names) and names[k].strip() for k in units)
     none = [unit for unit in units.values() if not known(unit)]
-    return bool(units and named) and 3 * len(none) <= len(units) * (not TIMES.isdisjoint(units.values()))
+    return bool(units and named) and 3 * len(none) <= 2 * len(units) * (not TIMES.isdisjoint(units.values()))

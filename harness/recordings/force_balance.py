@@ -10,6 +10,7 @@ import numpy as np
 
 from .relations import compared
 from .thresholds import Threshold
+from .time_base import interval_of
 
 RATIOS = (
     "0.84 and 0.92 in the recorded trips; 0.61 to 1.82 in 200 simulated drives of cars with half to one and a half of "
@@ -127,8 +128,3 @@ def balance(along: Forces, torque: float = 1.0) -> Balance:
         together, ratio = compared(takes[pushes], gives[pushes])
         found = found._replace(judged=True, together=together, ratio=ratio, moved=float(np.std(takes[pushes])))
     return found
-
-
-def interval_of(time: np.ndarray) -> float:
-    """Median step of times."""
-    return float(np.median(np.diff(time)))

@@ -34,6 +34,10 @@ FOREIGN = {
     b"\x93NUMPY": "an array of NumPy",
     b"\x0a\x0d\x0d\x0a": "a capture of network packets",
     b"<?xml": "an XML document",
+    b"<!DOCTYPE": "an HTML document",
+    b"<html": "an HTML document",
+    b"FEA1": "a Feather file of version 1",
+    b"\xff\xff\xff\xff": "a stream of Arrow",
     b"{": "a JSON document",
 }
 """What is not read, by the bytes with which it begins."""

@@ -1,5 +1,5 @@
 """Headings of columns: name and unit, as in `Motor Speed [rpm]`, `Motor Speed (rpm)`, `Motor Speed / rpm`, `Motor Speed
-- rpm`, `Motor Speed in rpm` and `motor_speed_rpm`."""
+- rpm`, `Motor Speed in rpm`, `motor_speed_rpm` and `Motor.Speed..rpm.`."""
 
 import re
 from collections.abc import Iterator
@@ -9,14 +9,22 @@ IN_BRACKETS = re.compile(
     r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]?|\((?P<round>.*)\)|\{(?P<curly>.*)\}|<(?P<angle>.*)>)\s*", re.DOTALL
 )
 
+TAG = re.compile(
+    r"\s*[(\[](?:0x[0-9a-f]+|(?:CAN|LIN|XCP|CCP|ETK\w?|FlexRay)\W*\d*|[01](?=[)\]]\s*[(\[]))[)\]]"
+    r"|(?<=[)\]])\s*[(\[]\d+ ?(?:ms|s|Hz)[)\]]",
+    re.IGNORECASE,
+)
+"""Bus, frame, first element or rate in brackets beside the unit: `v (CAN 1) [km/h]`, `v [km/h] (10 ms)`."""
+
 
 def split(heading: str) -> tuple[str, str | None]:
     """Name, and unit if one stands behind it in brackets of any kind."""
+    heading = TAG.sub("", heading).strip(" :")
     found = IN_BRACKETS.fullmatch(heading)
     if not found:
-        return heading.strip(), None
+        return heading, None
     unit = next(each for each in found.groups()[1:] if each is not None)
-    return OPENING.sub("", found["name"]).strip(), unit.strip() or None
+    return OPENING.sub("", found["name"]).strip(), re.sub("^unit: *", "", unit.strip()) or None
 
 
 OPENING = re.compile(r"\s*/\s*$|\s+in\s*$")
@@ -25,21 +33,20 @@ OPENING = re.compile(r"\s*/\s*$|\s+in\s*$")
 BEHIND = (
     re.compile(r"(?P<name>[^/]+?)\s*/\s*(?P<unit>.+)"),
     re.compile(r"(?P<name>.+)\s+in\s+(?P<unit>\S.*)"),
-    re.compile(r"(?P<name>.+?)(?:\s+-|:|,)\s+(?P<unit>\S.*)"),
+    re.compile(r"(?P<name>.+?)(?:(?:\s+-|:|,)\s+|[|@]|::)(?P<unit>\S.*)"),
 )
 """A quantity over its unit (ISO 80000-1), in words, and behind a mark."""
 
 
 def without_brackets(name: str) -> Iterator[tuple[str, str]]:
     """Name and unit as they may stand in a heading without brackets: `T / Nm`, `v/(km/h)`, `T in Nm`, `v_kmh`, and
-    `v_km_h` for km/h. Whether the unit is one is not asked."""
+    `v_km_h` or, as R writes it, `v..km.h.` for km/h. Whether the unit is one is not asked."""
     for form in BEHIND:
         if found := form.fullmatch(name):
             yield found["name"].strip(), found["unit"].strip(" ()")
-    for words in (1, 2):
-        first, *last = name.rsplit("_", words)
-        if len(last) == words and first and all(last):
-            yield first, "/".join(last)
+    words = [word for word in re.split(r"[._]+", name) if word]
+    for count in range(1, min(len(words), 3)):
+        yield "_".join(words[:-count]), "/".join(words[-count:])
 
 
 DEVICE = re.compile(r"(.*::)?([^\\]+?)(\s*\\.*)?", re.DOTALL)
@@ -47,8 +54,12 @@ DEVICE = re.compile(r"(.*::)?([^\\]+?)(\s*\\.*)?", re.DOTALL)
 
 
 def key(name: str) -> str:
-    """The same for names that differ in case, spaces, underscores and their device alone (`MotorTorque`), or in how an
-    umlaut is written."""
+    """The same for names that differ in case, blanks, marks between words and their device alone (`MotorTorque`,
+    `Motor-Torque`), or in how an umlaut is written. A minus before a name stays: the sign is the other."""
     found = DEVICE.fullmatch(name)
-    bare = found[2] if found else name
-    return normalize("NFC", "".join(bare.replace("_", " ").split()).casefold())
+    return normalize("NFC", re.sub(r"[\s_./\u200b\ufeff]|(?!^)-", "", (found[2] if found else name).strip()).casefold())
+
+
+def last_part(name: str) -> str:
+    """A name without its path: `CAN1.ABS.Velocity`, `Model Root/Plant/Velocity`."""
+    return re.split(r"[./]", name)[-1]

@@ -16,6 +16,7 @@ from ...fmus.unit_conversion import converts, factor
 from ..base.optional_packages import required
 from ..base.plain_text import plain
 from .clock_times import Clock
+from .headings import split
 from .source import Column, RecordingError, Samples, Where, samples
 
 MARKS = (b"MDF     ", b"UnFinMF ")
@@ -118,5 +119,6 @@ def _channels(file: Any) -> Iterator[tuple[int, int, Any]]:
 
 
 def _column(channel: Any, heading: str) -> Column:
-    unit = channel.unit or getattr(channel.conversion, "unit", "") or ""
-    return Column(plain(heading, 60), plain(channel.name, 60), plain(unit, 60) or None)
+    name, unit = split(channel.name)
+    own = channel.unit or getattr(channel.conversion, "unit", "") or unit or ""
+    return Column(plain(heading, 60), plain(name, 60), plain(own, 60) or None)

@@ -15,7 +15,7 @@ from .relations import check_relations
 from .signal_checks import check_signal, too_slow
 from .source import RecordingError
 from .thresholds import Threshold
-from .time_base import WHOLE, Break, Cut
+from .time_base import WHOLE, Break, Cut, interval_of
 
 BASE = "omega_1"
 """Whose samples are the time base."""
@@ -117,10 +117,7 @@ def read_measurement(
     ]
     for channel in judged:
         check_signal(path, channel)
-    received = {
-        *held,
-        *(wheel for wheel in wheels if is_slower(channels[wheel], channels[BASE])),
-    }
+    received = {*held, *(wheel for wheel in wheels if is_slower(channels[wheel], channels[BASE]))}
     parts = []
     for piece in pieces:
         kept = {quantity: of for quantity, of in piece.items() if quantity not in LOADED or quantity in loads}
@@ -129,15 +126,15 @@ def read_measurement(
         if loads:
             signals["T_load"] = _load(values, loads, i)
         parts.append({"time": time, **signals, **{name: values[name] for name in held}})
-    signals = {name: parts[0][name] for name in ("T_mot", BASE, "omega_2", "T_load", "T_ref") if name in parts[0]}
-    interval = float(np.median(np.diff(parts[0]["time"])))
+    longest = parts[0]
+    signals = {name: longest[name] for name in ("T_mot", BASE, "omega_2", "T_load", "T_ref") if name in longest}
     parts.sort(key=lambda part: part["time"][0])
     values = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     headings = {quantity: channels[quantity].heading for quantity in ("T_mot", BASE, "T_ref") if quantity in channels}
     headings |= {
         q: " and ".join(channels[one].heading for one in of) for q, of in (("omega_2", wheels), ("T_load", loads))
     }
-    check_relations(path, headings, interval, signals)
+    check_relations(path, headings, interval_of(longest["time"]), signals)
     return Measurement(
         path.stem,
         values["time"],

@@ -1,27 +1,38 @@
 """Samples without a value: codes that loggers write in its place, and holes, the short ones filled."""
 
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .thresholds import Threshold
 
-NINES = {sign * (10.0**digits - unit) for digits in (3, 4, 5, 6) for unit in (1.0, 0.1, 0.01) for sign in (1.0, -1.0)}
+NINES = {sign * (10.0**digits - unit) for digits in range(3, 11) for unit in (1.0, 0.1, 0.01) for sign in (1.0, -1.0)}
 """999, 9999.9, ..."""
 
-BITS = (8, 12, 16, 32)
-"""Of the integers in which signals are sent."""
+HUGE = 1e29
+"""Magnitude of what cannot be measured: 9.9e34 of DIAdem, the largest numbers of single and double precision."""
 
-ENDS = {end for bits in BITS for end in (2.0**bits - 1.0, 2.0 ** (bits - 1) - 1.0, -(2.0 ** (bits - 1)))}
-"""Of integers of so many bits."""
 
-RESERVED = ENDS | {
-    error for bits in BITS for error in (2.0**bits - 2.0, 2.0 ** (bits - 1) - 2.0, 1.0 - 2.0 ** (bits - 1))
-}
-"""With what else is kept for errors there."""
+def _ends(bits: Iterable[int], reserved: int) -> set[float]:
+    """The largest and smallest integers of so many bits, with and without a sign, and some beside them."""
+    return {
+        end
+        for n in bits
+        for k in range(reserved)
+        for end in (2.0**n - 1.0 - k, 2.0 ** (n - 1) - 1.0 - k, k - 2.0 ** (n - 1))
+    }
 
-RESOLUTIONS = tuple(digit * 10.0**-k for k in range(5) for digit in (1.0, 5.0, 2.0, 2.5, 1.25))
-"""Of signals, in the units of their files."""
+
+ENDS, RESERVED = _ends((8, 12, 16, 32), 1), _ends((*range(8, 17), 20, 24, 32, 48, 64), 2)
+"""Of the integers that are usual, and of all in which signals are sent, with what else is kept for errors there."""
+
+RESOLUTIONS = (
+    *(digit * 10.0**-k for k in range(5) for digit in (1.0, 5.0, 2.0, 2.5, 1.25)),
+    *(2.0**-k for k in range(4, 11)),
+)
+"""Of signals, in the units of their files; that of the column itself is tried beside them."""
 
 ALONE, SCALED = (
     Threshold(value, "1", f"distance of a code from all other values, over their range{which}", source)
@@ -37,22 +48,35 @@ MOST = 8
 """Codes that a channel has above and below all values."""
 
 FILLED = Threshold(0.1, "s", "longest hole that is filled by a straight line", "a tenth of a period of 1 Hz")
-LATE = 1.5
-"""Times the interval from which on a step of time over samples without a value is a hole."""
+EXACTLY, WRITTEN = 1e-9, 2e-6
+"""Part by which a decimal code may be off, and an integer as it was written, with six digits at least."""
+
+LATE = Threshold(
+    1.5, "1", "step of time over samples without a value, in intervals, that makes a hole", "one is missing at 2"
+)
 
 
-def is_code(value: float) -> bool:
-    """Whether a number of a file is one of them, whatever its resolution."""
-    return any(_is_one_of(value, NINES | ENDS))
+def is_code(values: ArrayLike) -> Any:
+    """Which numbers of a file are codes, whatever their resolution."""
+    return (np.abs(values) > HUGE) | _near(values, NINES, EXACTLY) | _near(values, ENDS, WRITTEN)
 
 
-def _is_one_of(value: float, codes: set[float]) -> list[bool]:
-    return [abs(value - code) < 1e-9 * abs(code) for code in codes]
+def is_scaled_code(values: np.ndarray, *own: float) -> Any:
+    """Which are a reserved integer times a resolution: one that is usual, or that of the column."""
+    integers = np.divide.outer(np.clip(values, -HUGE, HUGE), (*RESOLUTIONS, *own))
+    return _near(integers, RESERVED, WRITTEN).any(axis=-1)
 
 
-def is_scaled_code(value: float) -> bool:
-    """Whether it is a reserved integer times a resolution."""
-    return any(any(_is_one_of(value / resolution, RESERVED)) for resolution in RESOLUTIONS)
+def _near(values: ArrayLike, codes: set[float], part: float) -> Any:
+    those = np.array([*codes])
+    return (np.abs(np.subtract.outer(values, those)) < part * np.abs(those)).any(axis=-1)
+
+
+def _resolution(values: np.ndarray) -> tuple[float, ...]:
+    """That of a column, of its different values in ascending order; nothing of less than two."""
+    inner = values[MOST:-MOST] if len(values) > 3 * MOST else values
+    steps = np.diff(inner)
+    return (float(np.ptp(inner) / round(np.ptp(inner) / steps.min())),) if len(steps) else ()
 
 
 def coded(written: np.ndarray) -> np.ndarray:
@@ -60,8 +84,8 @@ def coded(written: np.ndarray) -> np.ndarray:
     values = np.sort(written[np.isfinite(written)])
     values = values[np.diff(values, prepend=-np.inf) > 0.0]  # np.unique hashes, which takes ten times as long
     outer = np.unique(np.concatenate((values[:MOST], values[-MOST:])))
-    sure = np.array([is_code(value) for value in outer], dtype=bool)
-    perhaps = np.array([is_scaled_code(value) for value in outer], dtype=bool)
+    own = _resolution(values[np.abs(values) < HUGE])
+    sure, perhaps = is_code(outer), is_scaled_code(outer, *own)
     others = values[~np.isin(values, outer[sure | perhaps])]
     if not len(others):
         return np.zeros(len(written), dtype=bool)

@@ -12,9 +12,10 @@ from .channel_rules import RULES as CHANNEL_RULES
 from .channel_rules import of_channels
 from .drive import Drive
 from .findings import Finding, Rule, marked
-from .force_balance import FORCE, LARGEST, SIGNED, SMALLEST, TOGETHER, Car, balance, forces, interval_of
+from .force_balance import FORCE, LARGEST, SIGNED, SMALLEST, TOGETHER, Car, balance, forces
 from .headings import split
 from .thresholds import Threshold
+from .time_base import interval_of
 
 OSCILLATION = 8.0
 """Frequency of a drive train in Hz."""

@@ -3,6 +3,7 @@
 Nothing here is slow to import: help needs it.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
@@ -20,11 +21,34 @@ Aliases = Mapping[str, Sequence[str]]
 """Names by quantity; the first one is shown."""
 
 BY_UNIT: Mapping[str, Sequence[str]] = {
-    "time": ("Date", "Datum", "Datetime", "Date Time", "Date/Time", "Datum/Uhrzeit", "Datum/Zeit", "Uhrzeit"),
+    "time": (
+        "Date",
+        "Datum",
+        "Datetime",
+        "Datum Uhrzeit",
+        "Datum Zeit",
+        "Uhrzeit",
+        "Index",
+        "__index_level_0__",
+        "x",
+        "",
+    ),
+    "v": ("GPS Speed",),
     "T_mot": ("T", "M"),
     "omega_1": ("Speed", "n"),
 }
 """Names that leave open what they mean, by quantity: they count with a unit of it, where no column has a better one."""
+
+PARTS = "v t speed torque drehmoment drehzahl couple height slope grade gradient valid counter alive"
+OF_MANY = frozenset(PARTS.split())
+"""Names, as `key` gives them, that mean this car only where no path stands before them: Brake/Torque is another."""
+
+ANOTHER = re.compile(
+    r"(?<![a-z])(max|min|limit|request|demand|ref|reference|set|setpoint|target|soll|error|wind|trailer|lead|rear|front)"
+    r"(?![a-z])",
+    re.IGNORECASE,
+)
+"""In a path before a name: that it is no measured quantity of this car, or of a part of it."""
 
 
 STEPS = 3.0

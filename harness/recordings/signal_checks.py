@@ -34,10 +34,10 @@ def check_signal(path: Path, channel: Channel) -> None:
 
 def too_slow(channel: Channel) -> str:
     """What to say of a channel with too few samples; "" of one with enough."""
-    slowest, interval = QUANTITIES[channel.quantity].slowest, float(np.median(np.diff(channel.time)))
-    if interval <= slowest * (1.0 + 1e-6):  # the last digits of written times must not decide
+    slowest = QUANTITIES[channel.quantity].slowest
+    if channel.interval <= slowest * (1.0 + 1e-6):  # the last digits of written times must not decide
         return ""
     return (
-        f"{channel.heading} has a sample every {1e3 * interval:g} ms; "
+        f"{channel.heading} has a sample every {1e3 * channel.interval:g} ms; "
         f"{1e3 * slowest:g} ms or less are needed to identify anything"
     )

@@ -16,7 +16,7 @@ import numpy as np
 from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
 from ...fmus.unit_conversion import converts, factor
 from ..base.plain_text import plain
-from .cells import SPELLINGS, is_missing, numbers
+from .cells import SPELLINGS, TRUTHS, is_missing, numbers
 from .clock_times import seconds
 from .dialect import Dialect, dialect_of
 from .headings import split
@@ -26,13 +26,16 @@ from .source import Column, RecordingError, Samples, Where
 LONGEST_CELL = 60
 """Characters of a cell that are shown."""
 
-DIGIT, COMMENT = re.compile(r"\d", re.ASCII), re.compile(r"\s*(#|//|%)\s")
+DIGIT = re.compile(r"\d", re.ASCII)
 
-PADDING = "\x00\x1a"
-"""What some write behind the last line."""
+PADDING = "\x00\x1a\xff\ufffd"
+"""What some write behind the last line, and before the next after a loss of power."""
 
-TRUTHS = ("true", "false")
-"""What pandas takes for numbers."""
+CONTROLS = re.compile("[\x01-\x08\x0e-\x19\x1c-\x1e]")
+"""Characters that no text has."""
+
+WHOLE = re.compile(r'"((?:[^"]|"")*)"\s*')
+"""A line in quotes: spreadsheets write it so of a text that they have not parted into cells."""
 
 PIECE = 4_000_000
 """Characters that are parsed at a time."""
@@ -56,6 +59,11 @@ class TextFile:
             )
         self._encoding = encoding_of(path)
         head = self._head()
+        if CONTROLS.search(head):
+            raise RecordingError(f"{path} is no text, and of no other kind that is read")
+        lines = head.split("\n", 20)[:-1]
+        self._in_quotes = len(lines) > 1 and all(WHOLE.fullmatch(line) for line in lines if line.strip())
+        head = "\n".join(map(self._unquoted, head.split("\n")))
         self._dialect = logger_dialect(head, path) or dialect_of(head, path)
         self.headings = f"{path}, line {self._dialect.names_line}"
         if len(self._dialect.names) > MOST_COLUMNS:
@@ -90,10 +98,14 @@ class TextFile:
     def _text(self) -> Iterator[TextIO]:
         """The text, its lines ended by one line feed each."""
         try:
-            with self.path.open(encoding=self._encoding) as file:
+            with self.path.open(encoding=self._encoding, errors="replace") as file:  # the last character may be cut off
                 yield file
-        except UnicodeDecodeError as error:
-            raise RecordingError(f"{self.path} is no text: {error.reason}") from error
+        except UnicodeError as error:
+            raise RecordingError(f"{self.path} is no text: {error}") from error
+
+    def _unquoted(self, line: str) -> str:
+        found = WHOLE.fullmatch(line) if self._in_quotes else None
+        return found[1].replace('""', '"') if found else line
 
     def _head(self) -> str:
         """Whole lines at the beginning."""
@@ -112,7 +124,8 @@ class TextFile:
             while piece := file.read(PIECE):
                 lines = (piece + (end := file.readline(LONGEST_LINE + 1))).split("\n")
                 self._require_short(lines, number)
-                if lines[-1] and not end and len(lines) > 1 and lines[-1].count(separator) < lines[-2].count(separator):
+                lines = [*map(self._unquoted, lines)] if self._in_quotes else lines
+                if lines[-1] and not end and _is_cut_off([line.rstrip(PADDING) for line in lines[-10:]], separator):
                     lines[-1] = ""
                 if not lines[-1]:
                     del lines[-1]
@@ -128,7 +141,7 @@ class TextFile:
         separator = self._dialect.separator
         blank = f"\t {separator}{PADDING}"
         kept = [k for k, line in enumerate(lines) if line.strip(blank)]
-        lines, at = [lines[k].rstrip(PADDING) for k in kept], first + np.array(kept, dtype=int)
+        lines, at = [lines[k].strip(PADDING) for k in kept], first + np.array(kept, dtype=int)
         if not lines:
             return Piece(at, {place: np.empty(0) for place in places}, {})
         widths = [line.count(separator) for line in lines]
@@ -154,8 +167,8 @@ class TextFile:
         names = np.ones(len(at), dtype=bool)
         for place, column in cells.items():
             names &= column == self._dialect.names[place] if place < len(self._dialect.names) else False
-        digits = [any(DIGIT.search(cell) for cell in row) for row in zip(*cells.values(), strict=True)]
-        kept = np.array(digits) & ~names & ~np.array([COMMENT.match(line) is not None for line in lines])
+        digits = [any(map(DIGIT.search, row)) for row in zip(*cells.values(), strict=True)]
+        kept = np.array(digits) & ~names & ~np.array([*map(self._dialect.is_note, lines)])
         for place, column in cells.items():
             if self._is_clock(place):
                 values[place] = column[kept]
@@ -164,7 +177,8 @@ class TextFile:
         return Piece(at[kept], values, unreadable)
 
     def _all_numbers(self, lines: Sequence[str], places: Sequence[int], widest: int) -> dict[int, np.ndarray] | None:
-        """The numbers, found all at once, NaN where there is none; None if something else is, or may be, among them."""
+        """The numbers, found all at once, NaN where there is none; None if something else is, or may be, among them, as
+        true and false, which pandas takes for numbers."""
         text = "\n".join(lines).lower()
         if self._dialect.decimal == self._dialect.separator or any(truth in text for truth in TRUTHS):
             return None
@@ -232,6 +246,14 @@ class TextFile:
         return RecordingError(f"{self.path}, line {line} has {cells} cells; at most {MOST_COLUMNS} are read")
 
 
+def _is_cut_off(lines: Sequence[str], separator: str) -> bool:
+    """Whether the last of some lines, which has no end, is shorter than those before it: by cells, or by decimals of
+    its last number."""
+    ends = [re.search(r"[.,][^.,]*$", line.rpartition(separator)[2]) for line in lines]
+    *others, last = [(line.count(separator), len(end[0]) if end else 0) for line, end in zip(lines, ends, strict=True)]
+    return bool(others) and (last[0] < others[-1][0] or last[1] < min(decimals for _, decimals in others))
+
+
 class Piece(NamedTuple):
     """Some lines: their numbers in the file, the values of columns, of times of day the cells, and by column and index
     what cannot be read."""
@@ -282,9 +304,8 @@ def encoding_of(path: Path) -> str:
         decoder, piece = codecs.getincrementaldecoder("utf-8")(), head
         try:
             while piece:
-                decoder.decode(piece)
+                decoder.decode(piece.replace(b"\xff", b""))  # which erased flash has behind a text
                 piece = file.read(PIECE)
-            decoder.decode(b"", final=True)
         except UnicodeDecodeError:
             return "latin-1"
     return "utf-8"

@@ -9,17 +9,24 @@ import numpy as np
 
 from .clock_times import Clock
 from .source import RecordingError
+from .thresholds import Threshold
 
 INTERVALS = (1e-6, 1e6)
 """In s, of a recording: times in another unit than they are called are within, and filters of signals can be made."""
 
-OFTEN = 0.05
-"""Share of the steps that are zero from which on the resolution of the clock is why."""
+OFTEN = Threshold(
+    0.05, "1", "share of equal times from which on the clock is coarse", "a row that is written twice is one"
+)
 
 
 def typed(time: float) -> str:
     """A time in s without the last digits, as it is typed."""
     return f"{round(time, 9):.15g}"
+
+
+def interval_of(time: np.ndarray) -> float:
+    """Median step of times."""
+    return float(np.median(np.diff(time)))
 
 
 class Cut(NamedTuple):

@@ -100,14 +100,19 @@ def half(t: float) -> str:
 
 FEW = [*range(30), *range(31, COUNT)]
 
-MISSING_WORDS = (
-    "", " ", "-", "--", "---", "NaN", "nan", "NAN", "-nan", "N/A", "n/a", "#N/A", "#NV", "#DIV/0!", "#VALUE!", "#WERT!",
-    "null", "NULL", "(null)", "None", "nil", "1.#QNAN", "-1.#IND", "1.#QNAN00", "?", "???", "*", "****", "####", ".",
-    "overflow", "#OVR", "timeout", "<missing>", "..", "k. A.", "Not a Number",
-    "NAN(0x7f)", "---.--", "--,--", "#CALC!", "#NAME?", "offline", "Bad Input", "I/O Timeout",
-    "void", "invalid", "missing", "NA", "<NA>", "NaT", "\\N", "no data", "not available", "\N{EN DASH}", "nan(ind)",
-    "-nan(ind)", "ungültig", "SNA", "err",
-)  # fmt: skip
+NO_VALUE = (
+    "",
+    "--",
+    "NaN",
+    "n/a",
+    "#N/A",
+    "1.#QNAN00",
+    "ungültig",
+    "Not a Number",
+    "\N{EN DASH}",
+    "9.9E+34",
+    "3.402823E+38",
+)
 
 
 def labview(columns: str = "One", mark: str = ".") -> Habit:
@@ -139,7 +144,7 @@ def vbox() -> Habit:
 TWO_LINES = "Time,Velocity 1,Motor Torque\ns,km/h,Nm"
 
 HABITS: dict[str, Habit] = {
-    **{f"no value: {word!r}": replaced(30, 2, word, ";", said="has no value") for word in MISSING_WORDS},
+    **{f"no value: {word!r}": replaced(30, 2, word, ";", said="no value") for word in NO_VALUE},
     "no value: quoted": replaced(30, 2, '""', said="has no value"),
     "no value in the last rows": text(lambda k: plain(k) if k < 58 else f"{TIME[k]:.1f},,", kept=range(58)),
     "no value in the first rows": text(lambda k: plain(k) if k > 5 else f"{TIME[k]:.1f},NaN,NaN", kept=range(6, COUNT)),
@@ -168,6 +173,57 @@ HABITS: dict[str, Habit] = {
         lambda k: ";".join(cells(k)), "time;v_veh\\ETKC:1;T_mot\\ETKC:1\ns;km/h;Nm", count=COUNT
     ),
     "device before": text(names="time [s],ABS_1::Velocity [km/h],MCU::Motor Torque [Nm]"),
+    **{
+        f"path before: {path}": text(names=f"Time [s],{path}Velocity [km/h],{path}Motor Torque [Nm]")
+        for path in ("CAN1.ABS.", "XCPsim.", "Model Root/Plant/", "Platform()://ASM/Model Root/")
+    },
+    **{
+        f"in brackets: {what}": text(names=f"Time [s],Velocity {what} [km/h],Motor Torque {what} [Nm]")
+        for what in ("(CAN 1)", "(0x1A0)", "[0]")
+    },
+    "the rate behind": text(names="Time [s],Velocity [km/h] (10 ms),Motor Torque [Nm] (10 ms)"),
+    "another torque behind a path": text(
+        names="Time [s],Velocity [km/h],Brake/Torque [Nm]", refused=r"no column Motor Torque"
+    ),
+    **{
+        f"another torque: {name}": text(names=f"Time [s],Velocity [km/h],{name} [Nm]", refused="no column Motor Torque")
+        for name in ("-Motor Torque", "Request/Motor Torque", "Max.Motor Torque", "Motor Torque (2)")
+    },
+    "a torque with its sign turned": text(
+        lambda k: ",".join([*cells(k)[:2], f"{-T[k]:.1f}"]), "Time [s],Velocity [km/h],-Motor Torque [Nm]",
+        columns=(("T_mot", "-Motor Torque [Nm]"),),
+    ),
+    "names as MATLAB spells them": text(names="Time__s_,Velocity__km_h_,MotorTorque__Nm_"),
+    "names as R spells them": text(names="Time..s.,Velocity..km.h.,Motor.Torque..Nm."),
+    "names with hyphens": text(names="Time [s]:,Velocity [km/h]:,Motor-Torque (unit: Nm):"),
+    **{f"{mark} before units": text(names=f"Time{mark}s,Velocity{mark}km/h,Motor Torque{mark}Nm") for mark in "|@"},
+    "names in French": text(german, "Temps [s];Vitesse [km/h];Couple moteur [Nm]"),
+    "numbers of rows without a name": text(lambda k: f"{k},{plain(k)}"),
+    "numbers of rows that may be a time, and a column without a name": text(
+        lambda k: f"{k},{V[k]:.2f},{T[k]:.1f},7", "Time [ms],Velocity [km/h],Motor Torque [Nm]",
+        refused="line 2 has 4 cells below 3 names, and the first counts the rows",
+    ),
+    "numbers of rows as R writes them": text(
+        lambda k: f'"{k + 1}" {" ".join(cells(k))}', " ".join(f'"{name}"' for name in NAMES)
+    ),
+    "a time for each channel": text(
+        lambda k: f"{TIME[k]:.1f};{V[k]:.2f};{TIME[k] + 0.03:.2f};{T[k]:.1f}",
+        "Time [s];Velocity [km/h];Time [s];Motor Torque [Nm]",
+        kept=[],
+    ),
+    "a time of day for each channel": text(
+        lambda k: f"10:{clock(TIME[k])};{V[k]:.2f};10:{clock(TIME[k] + 0.03)};{T[k]:.1f}",
+        "Time;Velocity [km/h];Time;Motor Torque [Nm]",
+        kept=[],
+    ),
+    "two times side by side": text(
+        lambda k: f"{TIME[k]:.1f},{plain(k)}", f"Time [s],{','.join(NAMES)}", refused="2 columns are called Time"
+    ),
+    "a time of day for one channel, seconds for another": text(
+        lambda k: f"10:{clock(TIME[k])};{V[k]:.2f};{TIME[k] + 2.0:.1f};{T[k]:.1f}",
+        "Time;Velocity [km/h];Time [s];Motor Torque [Nm]",
+        refused=r"Time and Time \[s\] could each be time",
+    ),
     "two devices": text(
         lambda k: f"{plain(k)},0",
         "time [s],Velocity\\XCP:1 [km/h],Motor Torque [Nm],Velocity\\ETKC:2 [km/h]",
@@ -176,18 +232,17 @@ HABITS: dict[str, Habit] = {
     "thousands, German": text(
         lambda k: f"{german(k)};1.520,{k % 10}", ";".join((*NAMES, "Höhe [m]")), coding="utf-8-sig"
     ),
-    "thousands, German, whole": text(lambda k: f"{german(k)};1.520", ";".join((*NAMES, "Höhe [m]"))),
     "thousands, quoted": text(lambda k: f'{plain(k)},"1,520.5"', ",".join((*NAMES, "Height [m]"))),
-    "thousands, blank": text(lambda k: f"{german(k)};1 520,5", ";".join((*NAMES, "Height [m]"))),
     "thousands, no-break blank": text(lambda k: f"{german(k)};1\u00a0520,5", ";".join((*NAMES, "Height [m]"))),
-    "thousands, narrow blank": text(lambda k: f"{german(k)};1\u202f520,5", ";".join((*NAMES, "Height [m]"))),
     "thousands, Swiss": text(lambda k: f"{';'.join(cells(k))};1'520.5", ";".join((*NAMES, "Height [m]"))),
-    "thousands, Swiss, curly": text(lambda k: f"{';'.join(cells(k))};1’520.5", ";".join((*NAMES, "Height [m]"))),
     "millions": text(lambda k: f"{german(k)};1.001.520,5", ";".join((*NAMES, "Note"))),
+    **{f"minus {sign!r}": text(lambda k, sign=sign: plain(k).replace("-", sign)) for sign in "⁻‐—\u00ad"},
+    "a minus behind": text(lambda k: ",".join(f"{c[1:]}-" if c[0] == "-" else c for c in cells(k))),
+    "a minus apart": text(lambda k: plain(k).replace("-", "- ")),
+    "brackets for a minus": text(lambda k: ",".join(f"({c[1:]})" if c[0] == "-" else c for c in cells(k))),
+    "exponents of Fortran": text(lambda k: ",".join(f"{float(c):.6E}".replace("E", "D") for c in cells(k))),
+    "no exponent of Fortran": replaced(30, 2, "1D2", refused="1D2 is not a finite number"),
     "a true minus sign": text(lambda k: plain(k).replace("-", "−")),
-    "a dash for a minus": text(lambda k: plain(k).replace("-", "–")),
-    "a plus sign": text(lambda k: plain(k).replace(",", ",+").replace("+-", "-")),
-    "exponents": text(lambda k: f"{TIME[k]:.6E},{V[k]:.6E},{T[k]:+.6e}"),
     "exponents, German": text(lambda k: f"{TIME[k]:.6E};{V[k]:.6E};{T[k]:+.6e}".replace(".", ","), ";".join(NAMES)),
     "points among commas": text(
         lambda k: german(k).replace(",", ".") if k == 30 else german(k),
@@ -201,6 +256,8 @@ HABITS: dict[str, Habit] = {
     ),
     "a last line cut off": text(below="6.1,3", kept=range(COUNT)),
     "a last line cut off after a mark": text(below="6.1,", kept=range(COUNT)),
+    "a last number cut off": text(below="6.1,36.50,4"),
+    "a last character cut off": Habit(text(coding="utf-16").content[:-1]),
     "a last line without an end": Habit(text().content.rstrip(b"\n")),
     "a footer": text(below="End of file\n"),
     "a footer with numbers": text(below="Min,0,-35\nMax,50,125\n"),
@@ -209,6 +266,10 @@ HABITS: dict[str, Habit] = {
     "end-of-file byte": text(below="\x1a"),
     "end-of-file byte on the last line": Habit(text().content.rstrip(b"\n") + b"\x1a"),
     "zeros behind the end": text(below="\0" * 500),
+    "zeros after a loss of power": text(lambda k: "\0" * 50 * (k == 30) + plain(k)),
+    "a flash that was erased": Habit(
+        text(names="Zeitstempel [s],Vitesse véhicule [km/h],Motor Torque [Nm]").content.rstrip(b"\n") + b"\xff" * 16
+    ),
     "blank lines": text(at(30, "\n")),
     "blank cells in a line": text(at(30, ",,")),
     "names in the middle": text(at(30, ",".join(NAMES))),
@@ -217,10 +278,28 @@ HABITS: dict[str, Habit] = {
     ),
     "a comment in the middle": text(at(30, "# gate 7 opened")),
     "an event in the middle": text(at(30, "Pause")),
+    "marks of events before the time": text(
+        lambda k: f"{'x' if k % 10 == 0 else ''};{german(k)};false", ";".join(("Marker", *NAMES, "Brake"))
+    ),
+    "signs of events before the time": text(
+        lambda k: f"{'*' if k % 2 else '#1'},{plain(k)},false", ",".join(("Marker", *NAMES, "Brake"))
+    ),
+    "a comment with marks between cells": text(
+        lambda k: at(9, "# gate 7, door 8", lambda k: f"{k},{plain(k)}")(k), f"k,{','.join(NAMES)}"
+    ),
+    "a mark at a time": text(lambda k: "*" * (k == 30) + plain(k), refused=r"line 32, column Time .*: \*3\.0 is not"),
+    "a row with another mark": text(
+        lambda k: plain(k).replace(",", ";") if k == 30 else plain(k), refused=r"line 32, column Time .* is not a fin"
+    ),
+    "a page in the middle": text(at(30, f"\nPage 2\n{','.join(NAMES)}\n")),
+    **{f"{mark} before the names": text(names=f"{mark} {','.join(NAMES)}") for mark in (";", "!", "**", "--", "REM")},
+    "comments with numbers above": text(above="# a, b, c\n# 1, 2, 3\n# 4, 5, 6\n"),
+    "a long head": text(above="".join(f"# note {k}\n" for k in range(200))),
+    "a long head of numbers": text(above="".join(f"p{k},{k}\n" for k in range(120))),
+    "lines in quotes": text(lambda k: f'"{plain(k)}"', f'"{",".join(NAMES)}"'),
+    "blanks around commas": text(lambda k: " , ".join(f"{cell:>9}" for cell in cells(k)), " , ".join(NAMES)),
     "a number where the time is a word": text(at(30, "Pause,1,2"), refused=r"line 32, column Time .*: Pause is not"),
     "# before the names": text(names="# " + ",".join(NAMES)),
-    "#before the names": text(names="#" + ",".join(NAMES)),
-    "% before the names": text(names="% " + ",".join(NAMES)),
     "// before the names": text(names="// " + ",".join(NAMES)),
     "# before names and units": text(names="# Time,Velocity,Motor Torque\n# s,km/h,Nm"),
     "types below the units": text(names="Time,Velocity,Motor Torque\ns,km/h,Nm\ndouble,double,float32"),
@@ -239,12 +318,9 @@ HABITS: dict[str, Habit] = {
     "names over three lines": text(names="Car,Car,Motor\nTime,Velocity,Motor Torque\n[s],[km/h],[Nm]"),
     "percent of a torque": text(names="Time [s],Velocity [km/h],Motor Torque [%]", refused=r"in %, which does not"),
     "comments of an INI": text(above="; logger 7\n; rate 10 Hz\n"),
-    "comments above": text(above="# logger 7\n# rate 10\n"),
     "numpy.savetxt": text(lambda k: " ".join(cells(k)), "# t[s] v[km/h] T_mot[Nm]"),
     "blanks, many": text(lambda k: "   ".join(cells(k)) + " ", "t[s]   v[km/h]  T_mot[Nm]"),
-    "blanks before": text(lambda k: "  " + "  ".join(cells(k)), "  t[s] v[km/h] T_mot[Nm]"),
     "blanks, names in quotes": text(lambda k: " ".join(cells(k)), " ".join(f'"{name}"' for name in NAMES)),
-    "tabs": text(lambda k: "\t".join(cells(k)), "\t".join(NAMES)),
     "pipes": text(lambda k: "|".join(cells(k)), "|".join(NAMES)),
     "a table of Markdown": text(
         lambda k: f"| {' | '.join(cells(k))} |", f"| {' | '.join(NAMES)} |\n| --- | ---: | ---: |"
@@ -268,7 +344,6 @@ HABITS: dict[str, Habit] = {
     "LabVIEW, a time for each channel": labview("Multi"),
     "LabVIEW, no times": labview("No"),
     "VBOX": vbox(),
-    "carriage returns": text(end="\r\n"),
     "old Macintosh": text(end="\r"),
     "UTF-16": text(coding="utf-16"),
     "Latin-1": text(lambda k: f"{plain(k)},20 °C", ",".join((*NAMES, "Öl")), coding="latin-1"),
@@ -277,7 +352,6 @@ HABITS: dict[str, Habit] = {
     "texts of a spreadsheet": text(lambda k: ",".join(f'="{cell}"' for cell in cells(k))),
     "all quoted once": text(lambda k: ",".join(f"'{cell}'" for cell in cells(k)), ",".join(f"'{n}'" for n in NAMES)),
     "texts by an apostrophe": text(lambda k: ",".join(f"'{cell}" for cell in cells(k))),
-    "names in one word": text(names="time [s],Velocity [km/h],MotorTorque [Nm]"),
     "units in other brackets": text(names="Time {s},Velocity <km/h>,Motor Torque {Nm}"),
     "units behind a dash": text(names="Time - s,Velocity: km/h,Motor Torque - Nm"),
     "records of INCA": text(
@@ -307,9 +381,14 @@ HABITS: dict[str, Habit] = {
         refused=r"line 42: gap of 1\.1 s after 3\.9 s; .*; the longest piece without is --from 0 --to 3\.9$",
     ),
     "seconds with a unit": timed(lambda t: f"{t:g} sec"),
-    "seconds with a unit, s": timed(lambda t: f"{t:g} s"),
-    "milliseconds with a unit": timed(lambda t: f"{1e3 * t:g} ms"),
     "Timedelta of pandas": timed(lambda t: f"0 days 00:00:{t:09.6f}"),
+    "hours with a unit": timed(lambda t: f"{t / 3600.0:.12g} hr"),
+    "days with a unit": timed(lambda t: f"{t / 86400.0:.15g} days"),
+    "duration of Python": timed(lambda t: f"1 day, 0:00:{t:09.6f}"),
+    "duration of ISO": timed(lambda t: f"PT{t:g}S"),
+    "duration of ISO, all parts": timed(lambda t: f"P0DT0H0M{t:.3f}S"),
+    "duration in parts": timed(lambda t: f"0h 1m {t:.3f}s"),
+    "before a trigger": timed(lambda t: f"{'-' * (t < 2.0)}00:00:{abs(t - 2.0):06.3f}"),
     "hours, minutes, seconds": timed(lambda t: f"00:{clock(t)}"),
     "minutes and seconds": timed(lambda t: f"{clock(t)}", "Time [mm:ss.S]"),
     "over the hour in minutes": timed(lambda t: clock((3598.0 + t) % 3600.0)),
@@ -321,6 +400,17 @@ HABITS: dict[str, Habit] = {
     "date in English": timed(lambda t: f"Jan 5, 2026 {half(t)}"),
     "date in German": timed(lambda t: f"05.01.2026 10:{clock(t)}"),
     "date with two digits": timed(lambda t: f"05.01.26 10:{clock(t)}"),
+    **{
+        f"date: {date}": timed(lambda t, date=date: date.format(f"10:{clock(t)}"), name)
+        for date, name in (
+            ("5 févr. 2026 {}", "Temps"), ("5 août 2026 {}", "Temps"), ("05-Jan-26 {}", "Time"),
+            ("5 juil. 2026 {}", "Time"),
+            ("Mo, 5. Jan. 2026 {}", "Zeit"), ("Mon Jan  5 {} 2026", "Time"), ("2026年1月5日 {}", "Time"),
+            ("{} vorm.", "Zeit"), ("{} vorm", "Zeit"),
+            ("20260105T{}", "Time"), ("2026-01-05 {} CET", "Time"), ("2026-01-05T{}+01:00[Europe/Berlin]", "Time"),
+            ("05.01.2026 {} Uhr", "Zeit"), ("1/5/2026, {}\u202fAM", "Time"), ("2026-01-05 {}", ""),
+        )
+    },
     "ISO with comma": timed(lambda t: f"2026-01-05T10:{clock(t)}".replace(".", ",")),
     "ISO with zone": timed(lambda t: f"2026-01-05 10:{clock(t)}+01:00"),
     "over midnight": timed(lambda t: f"23:59:{57 + t:06.3f}" if t < 3.0 else f"00:{clock(t - 3.0)}"),

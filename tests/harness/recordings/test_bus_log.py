@@ -16,6 +16,7 @@ from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.format_detection import opened
 from driveline.harness.recordings.source import RecordingError
 from driveline.harness.recordings.time_base import Cut
+from tests.together import together
 
 pytestmark = pytest.mark.usefixtures("read_here")
 
@@ -78,12 +79,6 @@ def test_a_drive_is_read_from_a_log(tmp_path: Path, ending: str) -> None:
     np.testing.assert_allclose(found.elevation[::4], 500.0 + 50.0 * found.time[::4] - 0.1, atol=0.11)
 
 
-def test_what_the_file_is_called_does_not_matter(tmp_path: Path) -> None:
-    path, databases = write(tmp_path, drive())
-    path.rename(tmp_path / "log.csv")
-    assert len(read_drive(tmp_path / "log.csv", databases=databases).time) > 50
-
-
 def test_a_table_whose_first_column_is_a_date_is_no_log(tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
     path.write_text("date of day;Velocity [km/h]\n0;1\n1;2\n", encoding="utf-8")
@@ -125,7 +120,10 @@ def test_error_frames_and_remote_frames_hold_no_signals(tmp_path: Path) -> None:
     [
         ([], "has no frames"),
         ([message(0.0, 0x123, b"\x00")], r"no frame is in .*bus\.dbc; there are 0x123"),
-        ([*drive(20), message(0.2, 256, b"\x01")], r"frame at 0\.2 s: 01 is no Motor \(0x100\) of 4 bytes"),
+        (
+            [*drive(20), message(0.2, 256, b"\x01"), message(0.21, 256, bytes(4))],
+            r"frame at 0\.2 s: 01 is no Motor \(0x100\) of 4 bytes",
+        ),
         ([*drive(20), *drive(3)], "does not come after"),
         ([*drive(20), message(0.9, 256, bytes(4))], "gap of"),
     ],
@@ -205,6 +203,12 @@ TEXTS = {
     "ASC, decimal comma": asc(CLASSIC, [f"{0.01 * k:.6f}".replace(".", ",") for k in range(100)]),
     "ASC, BOM": "\ufeff" + asc(CLASSIC),
     "ASC, no date": asc(CLASSIC).partition("\n")[2],
+    "ASC, nothing but the base": "base hex timestamps absolute\n" + asc(CLASSIC).partition("logged\n")[2],
+    "ASC, comments above": "// of a tool\n" + asc(CLASSIC),
+    "ASC, frames by name": asc(CLASSIC.replace(" 100 ", " Motor ") + "  ID = 256"),
+    "ASC, frames by a name of hexadecimal digits": asc(CLASSIC.replace(" 100 ", " DCDC ") + "  ID = 256"),
+    "ASC, frames by name and number": asc(CLASSIC + "  Length = 10 BitCount = 4 ID = 256"),
+    "ASC, requests to send": asc(CLASSIC).replace("\n   0.05", "\n   0.045 1  100 TxRq d 4 01 00 00 00\n   0.05", 1),
     "ASC, CAN FD": asc("CANFD   1 Rx  100  Motor   1 0 4  4 {data}   130000  130 303000"),
     "ASC, CAN FD without names": asc("CANFD   1 Rx  100   1 0 4  4 {data}   130000  130 303000"),
     "ASC, empty CAN FD": asc("CANFD   1 Rx  100   1 0 4  4 {data}").replace(
@@ -216,6 +220,17 @@ TEXTS = {
     "candump, CAN FD": "\n".join(f"({1.7e9 + 0.01 * k:.6f}) can0 100##1{data}" for k, data in enumerate(LINES)),
     "candump -t a": "\n".join(
         f" ({1.7e9 + 0.01 * k:.6f})  can0  100   [4]  {k:02X} 00 00 00" for k in range(100)
+    ),
+    "candump -t d -x": "\n".join(
+        f" (000.{10000 * (k > 0):06})  can0  RX - -  100   [4]  {k:02X} 00 00 00" for k in range(100)
+    ),
+    "candump -t z, a coarse clock": "\n".join(
+        f" (000.{10 * (k // 2):03}000)  can0  {100 + k % 2}   [4]  {k // 2:02X} 00 00 00" for k in range(200)
+    ),
+    "candump, comment above, cut off": "# can0\n"
+    + "\n".join(f"({1.7e9 + 0.01 * k:.6f}) can0 100#{data}" for k, data in enumerate([*LINES, "0"])),
+    "candump, cut off in the time": "\n".join(
+        [*(f"({1.7e9 + 0.01 * k:.6f}) can0 100#{data}" for k, data in enumerate(LINES)), "(17000"]
     ),
     "candump -t A -a": "\n".join(
         f" (2026-01-05 10:15:{30.0 + 0.01 * k:09.6f})  can0  100   [4]  {k:02X} 00 00 00   '....'" for k in range(100)
@@ -229,7 +244,7 @@ TEXTS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@together("name", TEXTS)
 def test_a_log_of_every_kind_is_read(tmp_path: Path, name: str) -> None:
     path, databases = write(tmp_path, [])
     path.write_text(TEXTS[name], encoding="utf-8")
@@ -256,7 +271,7 @@ DATABASES = {
 }
 
 
-@pytest.mark.parametrize("name", DATABASES)
+@together("name", DATABASES)
 def test_a_database_of_every_tool_is_read(tmp_path: Path, name: str) -> None:
     path, databases = write(tmp_path, drive())
     databases[0].write_bytes(DATABASES[name])

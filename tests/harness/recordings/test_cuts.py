@@ -16,6 +16,7 @@ from tests.harness.recordings.car import RADIUS, RATIO, drive
 from tests.harness.recordings.conftest import Write
 from tests.harness.recordings.test_bus_log import CLASSIC, DBC, asc
 from tests.harness.recordings.variants import recording, table, write_arrow, write_mdf
+from tests.together import together
 
 pytestmark = pytest.mark.usefixtures("read_here")
 
@@ -50,14 +51,15 @@ FILES: dict[str, Callable[[Path], None]] = {
     "seconds": of_text,
     "time of day": lambda path: of_text(path, "%H:%M:%S.%f"),
     "date": lambda path: of_text(path, "%Y-%m-%dT%H:%M:%S.%f"),
+    "date with a zone": lambda path: of_text(path, "%Y-%m-%dT%H:%M:%S.%f+01:00"),
     "German date": lambda path: of_text(path, "%d.%m.%Y %H:%M:%S.%f"),
     "Parquet": of_dates,
 }
 
 
 @pytest.mark.parametrize("form", FILES)
-@pytest.mark.parametrize(
-    ("begin", "end", "first", "last"),
+@together(
+    "begin, end, first, last",
     [
         ("0.5", "1.2", 0.5, 1.2),
         (None, "1.2", 0.0, 1.2),

@@ -56,10 +56,20 @@ def test_one_row_of_numbers_above_the_names_is_no_beginning() -> None:
 
 
 @pytest.mark.parametrize(
-    ("units", "are_units"), [("s;Nm;enum", True), ("s;Nm;enum;gear", False), ("s;enum", False), ("rpm;Nm;enum", False)]
+    ("units", "are_units"),
+    [("s;Nm;enum", True), ("s;Nm;enum;gear", True), ("s;enum;gear;on", False), ("rpm;Nm;enum", False)],
 )
-def test_beside_a_time_a_third_of_the_units_may_be_none(units: str, are_units: bool) -> None:
+def test_beside_a_time_two_thirds_of_the_units_may_be_none(units: str, are_units: bool) -> None:
     names = NAMES[: units.count(";") + 1]
     found = dialect("", f"{units}\n" + f"{';'.join('1234'[: len(names)])}\n" * 6, names)
     cells = tuple(units.split(";"))
     assert (found.names, found.units) == ((names, cells) if are_units else (cells, ())), "the last row is of names"
+
+
+@pytest.mark.parametrize(
+    ("speeds", "decimal"),
+    [("998;1,002", "."), ("998;1.002", ","), ("1000;1,002", ","), ("998,5;1,002", ","), ("2,125;1,002", ",")],
+)
+def test_a_mark_before_three_digits_is_one_of_thousands_beside_whole_numbers_below(speeds: str, decimal: str) -> None:
+    rows = "".join(f"{k};{speed}\n" for k, speed in enumerate(3 * speeds.split(";")))
+    assert dialect("", rows, ("Time", "Speed")).decimal == decimal

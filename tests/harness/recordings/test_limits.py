@@ -20,6 +20,7 @@ from driveline.harness.recordings.source import RecordingError
 from tests.harness.recordings.test_bus_log import drive as frames
 from tests.harness.recordings.test_bus_log import write as write_log
 from tests.harness.recordings.variants import TEXTS, recording, table, write_arrow, write_mdf
+from tests.together import together
 
 HEADING = "Time [s],Velocity [km/h],Motor Torque [Nm]\n"
 
@@ -43,12 +44,12 @@ def rows(count: int) -> str:
     return HEADING + "".join(f"{0.01 * k:.2f},50,{k % 7}\n" for k in range(count))
 
 
-@pytest.mark.parametrize("variant", TEXTS)
+@together("variant", TEXTS)
 def test_a_text_in_many_pieces_is_read_as_in_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, variant: str) -> None:
     path = tmp_path / "drive.csv"
     path.write_bytes(TEXTS[variant](recording()))
     whole = read_drive(path)
-    monkeypatch.setattr(text_file, "PIECE", 100)
+    monkeypatch.setattr(text_file, "PIECE", 1000)
     in_pieces = read_drive(path)
     for name in ("time", "v", "elevation", "T_mot"):
         np.testing.assert_array_equal(getattr(whole, name), getattr(in_pieces, name))
@@ -83,18 +84,15 @@ def test_a_line_has_so_many_characters_at_the_most(tmp_path: Path, monkeypatch: 
     assert refusal(path) == f"line {line} has more than 2999 characters"
 
 
-def test_a_text_of_one_line_is_refused_for_its_length(tmp_path: Path) -> None:
-    assert refusal(written(tmp_path, "1," * limits.LONGEST_LINE)) == "line 1 has more than 1000000 characters"
-
-
-def test_a_line_has_so_many_cells_at_the_most(tmp_path: Path) -> None:
+def test_a_line_has_so_many_cells_at_the_most(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(text_file, "MOST_COLUMNS", 100)
     wide = [HEADING.strip(), *(f"{k},50,7" for k in range(150))]
-    wide[140] += "," * (limits.MOST_COLUMNS - 3)
+    wide[140] += "," * 97
     assert len(read_drive(written(tmp_path, "\n".join(wide))).time) == 150
     wide[140] += ","
-    assert refusal(written(tmp_path, "\n".join(wide))) == "line 141 has 10001 cells; at most 10000 are read"
-    names = HEADING.strip() + "".join(f",x{k}" for k in range(limits.MOST_COLUMNS - 2))
-    assert refusal(written(tmp_path, f"{names}\n0,50,7\n1,50,8\n")) == "line 1 has 10001 cells; at most 10000 are read"
+    assert refusal(written(tmp_path, "\n".join(wide))) == "line 141 has 101 cells; at most 100 are read"
+    names = HEADING.strip() + "".join(f",x{k}" for k in range(98))
+    assert refusal(written(tmp_path, f"{names}\n0,50,7\n1,50,8\n")) == "line 1 has 101 cells; at most 100 are read"
 
 
 def test_a_record_beside_a_file_is_read_up_to_a_megabyte(tmp_path: Path) -> None:

@@ -6,14 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from driveline.harness.recordings.cells import is_missing
 from driveline.harness.recordings.channel_rules import of_channels
+from driveline.harness.recordings.channels import Channels
 from driveline.harness.recordings.drive import read_drive
 from driveline.harness.recordings.source import RecordingError
 from driveline.harness.recordings.time_base import Cut
 from tests.harness.recordings.logger_texts import HABITS, TIME, T, V
+from tests.together import together
 
 
-@pytest.mark.parametrize("name", HABITS)
+@together("name", HABITS)
 def test_a_habit_of_loggers(tmp_path: Path, name: str) -> None:
     habit, path = HABITS[name], tmp_path / "drive.csv"
     path.write_bytes(habit.content)
@@ -42,3 +45,24 @@ def test_a_habit_of_loggers(tmp_path: Path, name: str) -> None:
     findings = [str(finding) for finding in of_channels(drive.channels.values())]
     assert len(findings) == bool(habit.said), findings
     assert all(habit.said in finding for finding in findings)
+
+
+WORDS = """
+    - -- --- NaN nan NAN -nan N/A n/a #N/A #NV #DIV/0! #VALUE! #WERT! null NULL (null) None nil 1.#QNAN -1.#IND ? ??? *
+    **** #### . overflow #OVR timeout <missing> .. NAN(0x7f) ---.-- --,-- #CALC! #NAME? offline void invalid missing NA
+    <NA> NaT \\N - nan(ind) -nan(ind) SNA err NOVALUE
+"""
+
+
+def test_what_loggers_write_where_there_is_no_value() -> None:
+    words = [*WORDS.split(), "", " ", "k. A.", "Bad Input", "I/O Timeout", "no data", "not available"]
+    assert [word for word in words if not is_missing(word)] == []
+    assert not any(map(is_missing, ("0", "-1", "x", "fast", "1e3", "on")))
+
+
+@together("name", ["a time for each channel", "a time of day for each channel"])
+def test_a_channel_has_the_time_that_stands_before_it(tmp_path: Path, name: str) -> None:
+    (path := tmp_path / "drive.csv").write_bytes(HABITS[name].content)
+    found = Channels(path).read("T_mot", "v")
+    np.testing.assert_allclose(found["v"].time, TIME, atol=1e-9)
+    np.testing.assert_allclose(found["T_mot"].time, TIME + 0.03, atol=1e-9)

@@ -38,7 +38,9 @@ def test_a_unit_in_brackets_or_parentheses(heading: str, name: str, unit: str | 
     ("heading", "readings"),
     [
         ("v_km_h", [("v_km", "h"), ("v", "km/h")]),
+        ("T..km.h.", [("T_km", "h"), ("T", "km/h")]),
         ("T / Nm", [("T", "Nm")]),
+        ("T|Nm", [("T", "Nm")]),
         ("v/km/h", [("v", "km/h")]),
         ("T in Nm", [("T", "Nm")]),
         ("speed", []),
@@ -116,17 +118,6 @@ def test_names_in_german(tmp_path: Path) -> None:
         drive = read_drive(path)
         assert drive.elevation is not None
         assert (drive.v[0], drive.T_mot[1], drive.elevation[1]) == (10.0, 2.0, 501.0)
-
-
-def test_the_speed_of_a_motor_in_german(write: Write) -> None:
-    columns = {
-        name.replace("n_EM1 [rad/s]", "Drehzahl / (rad/s)"): values for name, values in columns_of_ours().items()
-    }
-    assert read_measurement(write(columns), RATIO, RADIUS).columns["omega_1"] == "Drehzahl / (rad/s)"
-
-
-def columns_of_ours() -> dict[str, np.ndarray]:
-    return {name.replace("M_EM1 [Nm]", "M [Nm]"): values for name, values in columns().items()}
 
 
 def test_a_unit_decides_what_a_name_leaves_open(tmp_path: Path) -> None:

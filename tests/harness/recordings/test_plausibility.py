@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -35,7 +36,7 @@ from driveline.harness.recordings.drive import Drive, read_drive
 from driveline.harness.recordings.file_units import FileUnit
 from driveline.harness.recordings.findings import MOST_MARKED, Finding, Rule
 from driveline.harness.recordings.force_balance import EVERY, LARGEST, SMALLEST, Balance, Forces, balance, forces
-from driveline.harness.recordings.missing_values import BITS, ENDS, NINES, RESERVED, SCALED, coded, is_code
+from driveline.harness.recordings.missing_values import ENDS, NINES, RESERVED, SCALED, coded, is_code
 from driveline.harness.recordings.plausibility import (
     BEYOND,
     FOLLOWED,
@@ -50,6 +51,7 @@ from driveline.harness.recordings.plausibility import (
 )
 from driveline.harness.recordings.source import RecordingError
 from tests import ROOT
+from tests.together import together
 
 T_MAX = 180.0
 TRIPS = ROOT.parent / "shared" / "data"
@@ -188,7 +190,7 @@ def test_codes_are_those_of_loggers() -> None:
     assert not any(map(is_code, (0.0, 100.0, 998.0, -998.9, 99.0, 256.0, 65534.0)))
 
 
-@pytest.mark.parametrize("code", sorted(NINES | ENDS))
+@together("code", sorted(NINES | ENDS))
 def test_a_code_is_found_only_far_from_all_other_values(code: float) -> None:
     range_ = 0.1 * abs(code)
     for apart, expected in ((0.501, True), (0.499, False)):
@@ -198,8 +200,7 @@ def test_a_code_is_found_only_far_from_all_other_values(code: float) -> None:
         assert not coded(1.37 * written).any(), "it is no code"
 
 
-@pytest.mark.parametrize("resolution", [1.0, 0.5, 0.25, 0.1, 0.05, 0.01, 0.001])
-@pytest.mark.parametrize("integer", sorted(RESERVED))
+@together("resolution, integer", product([1.0, 0.25, 0.1, 0.05, 0.001], sorted(RESERVED)))
 def test_a_reserved_integer_times_the_resolution_is_a_code(resolution: float, integer: float) -> None:
     """Of 8, 12, 16 and 32 bits, far from all others."""
     code = resolution * integer
@@ -215,11 +216,9 @@ def test_a_reserved_integer_times_the_resolution_is_a_code(resolution: float, in
 def test_codes_of_several_kinds_are_all_found() -> None:
     written = np.append(np.linspace(-50.0, 120.0, 100), [3276.7, 3276.6, -3276.8, -999.0])
     assert coded(written).sum() == 4
-    assert {8, 12, 16, 32} == set(BITS)
 
 
-@pytest.mark.parametrize("width", [1, 2, 3])
-@pytest.mark.parametrize("interval", [0.01, 0.1])
+@together("width, interval", product([1, 2, 3], [0.01, 0.1]))
 def test_a_spike_is_what_no_tyre_can_do(width: int, interval: float) -> None:
     least = max(SPIKE, ACCELERATION * interval * width)
     for factor, expected in ((0.99, 0), (1.01, 1)):
@@ -231,8 +230,7 @@ def test_a_spike_is_what_no_tyre_can_do(width: int, interval: float) -> None:
         assert [finding.time for finding in findings] == pytest.approx([30 * interval] * expected)
 
 
-@pytest.mark.parametrize("quantity", ["T_mot", "T_ref", "T_load", "T_wheel", "omega_1", "omega_2", "omega_wheel"])
-@pytest.mark.parametrize("width", [1, 2, 3])
+@together("quantity, width", product(["T_mot", "T_wheel", "omega_1", "omega_2"], [1, 2, 3]))
 def test_a_lone_spike_of_any_channel_is_found(quantity: str, width: int) -> None:
     """By the range of its neighbours, and by that of the channel."""
     wave = 500.0 + 100.0 * np.sin(np.arange(2000) / 300.0)
@@ -370,23 +368,6 @@ def test_the_balance_of_a_fast_recording_is_that_of_its_means(interval: float) -
     expected = balance(forces(slow.time, slow.v, slow.T_mot, CAR))
     found = balance(along)
     assert (found.ratio, found.together) == pytest.approx((expected.ratio, expected.together), abs=0.03)
-
-
-def test_the_forces_of_a_drive_are_computed_once_and_once_more_for_another_unit(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    made: list[int] = []
-
-    def noted(time: np.ndarray, *others: Any) -> Forces:
-        made.append(len(time))
-        return forces(time, *others)
-
-    monkeypatch.setattr(plausibility, "forces", noted)
-    for torque, v, count in ((1.0, 1.0, 1), (1e-3, 1.0, 1), (1.0, 3.6, 2)):
-        made.clear()
-        one = drive(T_peak=170.0)
-        list(plausibility.unbalanced(replace(one, T_mot=torque * one.T_mot, v=v * one.v), CAR))
-        assert len(made) == count
 
 
 def test_a_car_that_stands_or_coasts_tells_nothing_of_the_torque() -> None:
