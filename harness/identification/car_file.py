@@ -8,6 +8,7 @@ import numpy as np
 from ...fmus.building.car_entries import vehicle_text
 from ...fmus.building.one_car import updated
 from ..recordings.source import RecordingError
+from ..recordings.thresholds import Threshold
 from .drive_train import DELAYS, Parameters
 from .estimator import Z_95
 from .free_runs import SIMULATED
@@ -24,8 +25,12 @@ MEANS = {
     WITHOUT_LOAD: "J_2 carries the vehicle, C has its tyres in it",
 }
 
-WIDEST_INTERVAL = 0.5
-"""Half of a 95 % interval over its value, up to which a parameter is one of a vehicle file."""
+WIDEST_INTERVAL = Threshold(
+    0.5,
+    "1",
+    "half of the 95 % interval of a parameter over its value, above which it is not written",
+    "the parameter may be half as large then, or half as large again",
+)
 
 
 class Row(NamedTuple):

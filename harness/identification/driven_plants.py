@@ -19,7 +19,7 @@ from ..cosimulation.runs import kept_loaded
 from ..loop.places import PLANTS
 from ..loop.settings import Settings
 from .car_file import WIDEST_INTERVAL, of_car
-from .identify import HELD_OUT, WITH_LOAD, Identified
+from .identify import HELD_OUT, WITHOUT_LOAD, Identified
 from .step import STEP_SIZE, Step, Tip, fitted, unexplained
 
 LONGEST, FIRST = 10.0, 2.5
@@ -48,8 +48,8 @@ def driven_plants(identified: Identified, vehicle: Mapping[str, Any], settings: 
     fits = []
     with kept_loaded():
         for plant in PLANTS:
-            _, near = fitted(plant, _beginning(identified, FIRST), noise, car, settings, starts, most=20, origin=1.0)
-            fits.append(fitted(plant, _beginning(identified, LONGEST), noise, car, settings, [near], origin=1.0)[0])
+            _, near = fitted(plant, _beginning(identified, FIRST), noise, car, settings, starts, most=20)
+            fits.append(fitted(plant, _beginning(identified, LONGEST), noise, car, settings, [near])[0])
     best = min(fits, key=lambda found: found.error)
     held_out = identified.drive.omega_1[round((1.0 - HELD_OUT) * len(identified.drive)) :]
     if (
@@ -63,12 +63,19 @@ def driven_plants(identified: Identified, vehicle: Mapping[str, Any], settings: 
 
 
 def diagnose_driven(identified: Identified, failed: Exception | None = None) -> Iterator[str]:
-    """Whose phi_B and C those of the vehicle file are, where two masses do not explain the car; and why.
+    """Whose phi_B and C those of the vehicle file are, where two masses do not explain the car; and why. What holds of
+    the filter's own answers without load torque, whose likelihood has many minima then.
 
     Args:
         failed: why no plant could be driven.
     """
-    why = "the gap of two masses is not that of this car" if identified.name == WITH_LOAD else "without load torque"
+    without_load = identified.name == WITHOUT_LOAD
+    why = "without load torque" if without_load else "the gap of two masses is not that of this car"
+    if without_load:
+        yield (
+            "J_2, C and d of the filter predict some ten milliseconds: without load torque another drive of this car "
+            "gives others, outside these intervals"
+        )
     doubt, by = f"may be up to {100.0 * identified.unconfirmed:g} % too small", identified.plant_fit
     if by:
         yield (

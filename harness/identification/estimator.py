@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.stats import norm
 
+from ..recordings.thresholds import Threshold
 from .drive_train import Parameters
 from .prediction import CHANNELS, Noise, Predicted, Predictor
 from .priors import LEAST, PRIORS, before, moved, scales, surprise
@@ -37,8 +38,12 @@ LINEARISED = 1.15
 """Times the deviations that the likelihood tells: the filter linearises the flanks of the gap. In drives of foreign
 loops the skew of the load scatters by 1.12 times that, all else by less."""
 
-UNTOLD = 0.5
-"""Standard deviation over that of before from which on the recording has told nothing of a parameter."""
+UNTOLD = Threshold(
+    0.5,
+    "1",
+    "standard deviation over that of before, of what is not told",
+    "three quarters of it are from the recording then",
+)
 
 
 @dataclass(frozen=True, eq=False)

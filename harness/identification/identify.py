@@ -7,6 +7,7 @@ import numpy as np
 
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
+from ..recordings.thresholds import Threshold
 from .diagnostics import (
     diagnose_excitation,
     diagnose_model,
@@ -49,9 +50,13 @@ ROUNDS, BETTER = 4, 1.0
 """Searches at most, each from the end of the one before, and gain in likelihood for another one: a deviation is .5.
 Where all lacks have come to half of NARROW there is no valley to leave."""
 
-UNCONFIRMED, UNCONFIRMED_ALONE = 0.1, 0.3
-"""Share by which phi_B may be off of a car that is more than two masses, with and without load torque: 9.5 and 28 %
-were the most of four detailed cars."""
+UNCONFIRMED, UNCONFIRMED_ALONE = (
+    Threshold(share, "1", f"share by which phi_B of more than two masses may be off, {load} load torque", of_four)
+    for share, load, of_four in (
+        (0.1, "with", "9.5 % is the most of four detailed cars"),
+        (0.3, "without", "28 % is the most of four detailed cars"),
+    )
+)
 
 HELD_OUT = 0.25
 """Share of the recording, its end, on which the fit is judged; for this the parameters are found without it."""

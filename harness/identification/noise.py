@@ -11,14 +11,17 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.signal.windows import hann
 
+from ..recordings.thresholds import Threshold
+
 WINDOWS = (12, 40)
 """Samples of a window."""
 
 LOWEST, HIGHEST = 0.4, 0.97
 """Frequencies that are looked at, over that of Nyquist: 100 to 242 Hz at 2 ms."""
 
-USUAL = 2.0
-"""Power over its mean from which on a window is left out; noise alone is above it in one of seven."""
+USUAL = Threshold(
+    2.0, "1", "power of a window over the mean, above which it is no noise", "of noise one in seven is above"
+)
 
 PASSES = 60
 

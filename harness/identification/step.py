@@ -28,6 +28,7 @@ from ..loop.places import PLANTS
 from ..loop.settings import Settings, loop
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
+from ..recordings.thresholds import Threshold
 from .estimator import Z_95
 from .noise import white_noise
 
@@ -65,20 +66,28 @@ BEFORE, AFTER = 0.2, 1.0
 RISE = 0.2
 """Time in s within which the torque has made its step."""
 
-STEP_OVER_NOISE = 10.0
-"""The least, of the torque."""
+STEP_OVER_NOISE = Threshold(10.0, "1", "least step of a torque over its noise", "noise moves the step by a tenth then")
 
 STEP_SIZE = 1e-3
+
+ORIGIN = 1.0
+"""Of what is searched: least_squares differentiates by shares of it, which about 0 are lost in the rounding."""
 
 CORRELATED = 0.1
 """Time in s of a window beyond which errors of the model no longer go together."""
 
-EXPLAINED = 1.1
-"""Error over the noise up to which a model explains a recording."""
-
-UNLIKE = 1.4
-"""How wrong what is not explained makes the answer, over how far the answers of both plants are apart: drawn cars whose
-mounts, hubs and body are others than those of their vehicle file are within."""
+EXPLAINED = Threshold(
+    1.1,
+    "1",
+    "error over the noise up to which a plant explains a step",
+    "the rms of 500 samples of noise scatters by 3 %",
+)
+UNLIKE = Threshold(
+    1.4,
+    "1",
+    "how wrong what no plant explains makes the answer, over how far both are apart",
+    "cars whose mounts, hubs and body are others than those of their file are within, 2 of 40 values off by 3 % more",
+)
 
 APART = {"C": (0.08, 0.25), "phi_B": (0.3, 0.45)}
 """How far the answers are apart at the least, of usual cars, and how far at the most that counts."""
@@ -193,7 +202,6 @@ def fitted(
     settings: Settings,
     starts: Sequence[Mapping[str, float]],
     most: int = 12,
-    origin: float = 0.0,
 ) -> tuple[Step, dict[str, float]]:
     """The car whose motor speed is the recorded one, and by what it is moved from what is known.
 
@@ -202,8 +210,6 @@ def fitted(
         vehicle: entries of the vehicle file as the car is known.
         starts: by what it may be moved; the search begins with the best of them.
         most: evaluations of each of two searches, without those for derivatives.
-        origin: of what is searched: least_squares differentiates by shares of it, and from 0 in steps that are lost in
-            the rounding of what follows from C. 1 makes them 1e-3; 0 keeps the bits of one step.
     """
     system, known = _plant(settings.replace(plant=plant)), with_estimates(vehicle)
     names = [name for name in SEARCHED if name != "damping" or plant != PLANTS[0]]
@@ -213,7 +219,7 @@ def fitted(
 
     def error(x: np.ndarray) -> np.ndarray:
         """Over the noise, then what is known before."""
-        x = x - origin
+        x = x - ORIGIN
         try:
             omega_1 = _motor_speed(system, plant, step, known, dict(zip(names, x.tolist(), strict=True)))
         except (ParameterFileError, SimulationError):
@@ -221,7 +227,7 @@ def fitted(
         return np.concatenate([(omega_1 - step.omega_1) / size, x / spread])
 
     begin = min(
-        (np.array([origin + start.get(name, 0.0) for name in names]) for start in starts),
+        (np.array([ORIGIN + start.get(name, 0.0) for name in names]) for start in starts),
         key=lambda x: float(error(x) @ error(x)),
     )
     for _ in range(2):
@@ -235,7 +241,7 @@ def fitted(
     scores = np.array([part.sum(axis=0) for part in np.array_split(J * r[:, None], windows)])
     sandwich = H @ (scores.T @ scores) @ H
     deviations = np.sqrt(np.maximum(np.diag(H), np.diag(sandwich)))
-    moved = dict(zip(names, (found.x - origin).tolist(), strict=True))
+    moved = dict(zip(names, (found.x - ORIGIN).tolist(), strict=True))
     halves = {name: Z_95 * float(of) for name, of in zip(names, deviations, strict=True) if name in ("C", "phi_B")}
     values = {name: known[name] * float(np.exp(moved[name])) for name in halves}
     return Step(plant, values, halves, rms, noise), moved

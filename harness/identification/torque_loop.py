@@ -17,6 +17,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
 from ..recordings.source import RecordingError
+from ..recordings.thresholds import Threshold
 from .noise import white_noise
 
 SQRT_2 = 2.0**0.5
@@ -30,8 +31,9 @@ START, SHORTEST, LONGEST = 0.003, 1e-4, 0.05
 EARLIEST, LATEST = -0.04, 0.1
 """Delays in s that are looked at: those of a demand that came late into the recording, to that of a slow gateway."""
 
-ANSWERS = 0.9
-"""Share of the power of the recorded torque that the demand must explain to be that of motor control."""
+ANSWERS = Threshold(
+    0.9, "1", "share of the power of the torque that its demand explains", "0.999 in test drives of foreign loops"
+)
 
 UNKNOWN = 0.2
 """Time in s at the beginning that is not fitted: what was demanded before the recording may still act."""
@@ -40,9 +42,15 @@ OUTLYING = 3.0
 """Noise of the recorded torque beyond which a miss counts less: a demand that was logged a tick early or late misses by
 half of its step, 30 times the noise."""
 
-AROUND, MET = 0.02, 1.6
-"""Time in s over which misses are averaged, and their rms over the noise of the torque up to which the demand explains
-it: of ten samples of noise one in 250 is beyond."""
+AROUND = 0.02
+"""Time in s over which misses are averaged."""
+
+MET = Threshold(
+    1.6,
+    "1",
+    "rms over 20 ms of what the demand does not explain, over the noise of the torque",
+    "of ten samples of noise one in 250 is beyond",
+)
 
 
 @dataclass(frozen=True)

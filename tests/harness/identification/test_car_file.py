@@ -111,7 +111,9 @@ def test_a_gap_that_no_plant_confirms_is_as_wide_as_the_filter_may_be_off(
 ) -> None:
     value, half = gap(of)
     assert half == pytest.approx(share * value)
-    assert [*diagnose_driven(of)] == [message]
+    *others, said = diagnose_driven(of)
+    assert said == message
+    assert [text.partition(" predict ")[0] for text in others] == ["J_2, C and d of the filter"] * (of is not LACKS)
     assert gap(FOUND)[1] < 0.1 * value
 
 

@@ -1,5 +1,6 @@
 """The white noise of a channel is found beside all that a drive train does."""
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from driveline.harness.manoeuvres.prbs import binary_torque
 from driveline.harness.simulation.simulate import simulate
 from tests.harness.recordings.car import drive
 from tests.slow import slow
+from tests.together import together
 
 WITHIN = 0.1
 """What is asked for."""
@@ -23,14 +25,14 @@ def white(seed: int, count: int = COUNT) -> np.ndarray:
 
 
 def test_white_noise_alone() -> None:
-    found = [white_noise(0.15 * white(seed)) / 0.15 for seed in range(20)]
+    found = [white_noise(0.15 * white(seed)) / 0.15 for seed in range(8)]
     assert np.mean(found) == pytest.approx(1.0, abs=0.05)
     assert np.std(found) < 0.03
 
 
 def test_of_interpolated_noise_that_of_the_lowest_frequencies_looked_at_counts() -> None:
     """Half-way between samples .71 of it are left in all, and nothing at the highest."""
-    between = [0.5 * (x[1:] + x[:-1]) for x in map(white, range(5))]
+    between = [0.5 * (x[1:] + x[:-1]) for x in map(white, range(3))]
     assert np.mean([white_noise(x, coloured=True) for x in between]) == pytest.approx(0.64, abs=0.05)
     assert max(white_noise(x) for x in between) < 0.4
 
@@ -48,7 +50,7 @@ def test_without_noise_there_is_none() -> None:
 def test_beside_what_a_drive_train_does(name: str, noise: float) -> None:
     clean = drive()[name]
     assert white_noise(clean) < 0.1 * noise
-    for seed in range(5):
+    for seed in range(2):
         assert white_noise(clean + noise * white(seed, len(clean))) == pytest.approx(noise, rel=WITHIN)
 
 
@@ -59,9 +61,7 @@ def test_with_the_noise_of_the_rounding(resolution: float) -> None:
     assert white_noise(rounded) == pytest.approx(np.hypot(0.15, resolution / np.sqrt(12.0)), rel=WITHIN)
 
 
-@pytest.mark.parametrize("size", [1.0, 5.0])
-@pytest.mark.parametrize("frequency", [0.45, 0.6, 0.75, 0.9])
-@pytest.mark.parametrize("swing", [0.0, 1.5])
+@together("size, frequency, swing", product([1.0, 5.0], [0.45, 0.9], [0.0, 1.5]))
 def test_beside_the_ripple_of_a_motor(size: float, frequency: float, swing: float) -> None:
     """A line, also one that goes to and fro with an oscillation of 8 Hz; rms over noise, frequency over Nyquist's."""
     ripple = size * np.sqrt(2.0) * np.sin(np.pi * frequency * K + swing * np.sin(2.0 * np.pi * 8.0 * 0.002 * K))
@@ -87,7 +87,7 @@ CARS = [
 def test_in_what_the_sensors_of_a_test_drive_record(both_built: Path, plant: str, control: bool) -> None:
     true = {"motor.omega_1_meas": np.hypot(0.15, 0.1 / np.sqrt(12.0)), "motor.T_mot_est": 0.3}
     manoeuvre = binary_torque("prbs", 10.0, 30.0, 0.04, 9, 10.0, 15.0 / 3.6)
-    for seed in (1, 2, 3):
+    for seed in (1, 2):
         results = simulate(manoeuvre, plant=plant, control=control, seed=seed, folder=both_built)[::2]
         for name, noise in true.items():
             assert white_noise(results[name]) == pytest.approx(noise, rel=WITHIN), name

@@ -8,6 +8,7 @@ import pytest
 from docs.studies.one_step import recorded
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.harness.commands.cli import main
+from driveline.harness.commands.identify_step import WIDEST, _lines
 from driveline.harness.identification.step import identify_step, tip
 from driveline.harness.loop.settings import Settings
 from driveline.harness.recordings.measurement import Measurement
@@ -56,15 +57,31 @@ def test_what_cannot_be_used_is_refused(given: dict[str, float], message: str) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("plant", ["TwoMassDriveline", "ValidationVehicle"])
-def test_both_are_found_within_their_intervals(plant: str, native: Path) -> None:
-    known, settings = {"m": 1600.0, "J_2": 0.36}, Settings(folder=native.parent, build="native")
-    found = identify_step(recorded(plant, CAR, "tipin15", 3, settings), known, settings)
+@pytest.mark.parametrize(
+    ("plant", "known"),
+    [
+        ("TwoMassDriveline", {}),
+        ("ValidationVehicle", {}),
+        ("ValidationVehicle", {"C": CAR["C"], "phi_B": CAR["phi_B"]}),
+    ],
+    ids=["design model", "vehicle", "known before"],
+)
+def test_both_are_found_within_their_intervals(plant: str, known: dict[str, float], native: Path) -> None:
+    settings = Settings(folder=native.parent, build="native")
+    found = identify_step(recorded(plant, CAR, "tipin15", 3, settings), {"m": 1600.0, "J_2": 0.36, **known}, settings)
     assert found.plant == plant
     for name, most in (("C", 0.03), ("phi_B", 0.1)):
         off = abs(np.log(found.values[name] / CAR[name]))
         assert off < min(most, found.halves[name])
         assert found.halves[name] < 0.3
+
+
+@pytest.mark.slow
+def test_a_gap_that_is_not_there_is_not_told(native: Path) -> None:
+    settings = Settings(folder=native.parent, build="native")
+    found = identify_step(recorded("TwoMassDriveline", {**CAR, "phi_B": 0.0}, "tipin15", 3, settings), CAR, settings)
+    assert found.halves["C"] < WIDEST < found.halves["phi_B"]
+    assert "phi_B: not told, in rad it is anything from " in "\n".join(_lines(found))
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """What motor control makes of the demand, and how it is found in a recording."""
 
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from driveline.harness.identification.torque_loop import PARAMETERS, SQRT_2, Fit
 from driveline.harness.manoeuvres.prbs import binary_torque, shift_register
 from driveline.harness.recordings.source import RecordingError
 from driveline.harness.simulation.simulate import simulate
+from tests.slow import slow
+from tests.together import together
 
 T_S = 0.002
 LOOP = TorqueLoop(tau=0.003, gain=1.02, offset=1.5, delay=0.0007)
@@ -54,8 +57,7 @@ def test_the_derivatives_are_those_of_the_torque() -> None:
         np.testing.assert_allclose(found[:, k], difference, atol=1e-5 * np.abs(difference).max(), err_msg=name)
 
 
-@pytest.mark.parametrize("tau", [0.001, 0.003, 0.0045, 0.03])
-@pytest.mark.parametrize("delay", [0.0, T_S, -T_S, 0.0007, -0.03, 0.08])
+@together("tau, delay", product([0.001, 0.0045, 0.03], [0.0, T_S, 0.0007, -0.03, 0.08]))
 def test_lag_and_delay_are_found_apart(tau: float, delay: float) -> None:
     loop = replace(LOOP, tau=tau, delay=delay)
     found = fitted(DEMAND, noisy(loop, 1), T_S)
@@ -64,6 +66,7 @@ def test_lag_and_delay_are_found_apart(tau: float, delay: float) -> None:
     assert found.explained > 0.999
 
 
+@pytest.mark.slow
 def test_the_lag_is_found_to_four_thousandths_and_its_interval_covers() -> None:
     found = [fitted(DEMAND, noisy(LOOP, seed), T_S) for seed in range(100)]
     assert max(abs(one.loop.tau / LOOP.tau - 1.0) for one in found) < 0.004
@@ -100,7 +103,7 @@ def test_a_demand_that_does_not_change_is_refused() -> None:
         fitted(np.full(1000, 20.0), noisy(LOOP, 1, np.full(1000, 20.0)), T_S)
 
 
-@pytest.mark.parametrize("tau", [0.003, 0.0045])
+@pytest.mark.parametrize("tau", slow([0.003, 0.0045], but=[0.0045]))
 def test_motor_control_of_the_loop_is_found(both_built: Path, tau: float) -> None:
     """From what it reports, in open and closed loop, with a demand that comes a sample late or early."""
     manoeuvre = binary_torque("prbs", 10.0, 30.0, 0.04, 9, 10.0, 15.0 / 3.6)
