@@ -13,6 +13,7 @@ examples:
 
 from pathlib import Path
 
+from ..base.errors import DrivelineError
 from ..loop.places import PLACES
 from ..manoeuvres.catalogue import MANOEUVRES
 from .arguments import option
@@ -34,31 +35,40 @@ class Arguments(Headings, Listing, Loop, Printing):
 
 
 def run(args: Arguments) -> int:
-    args.manoeuvre.beside(MANOEUVRES)
+    cut = args.from_ is not None or args.to is not None
+    if args.recording is None and (cut or args.dbc or args.column or args.aliases):
+        raise DrivelineError("--from, --to, --dbc, --column and --aliases are for a RECORDING; none is given")
+    offered, recording = args.manoeuvre.beside(MANOEUVRES), None
     blocks = {"plant": args.plant, "controller": args.controller, "motor": [args.motor], "can": [args.can]}
-    for path in [Path(name) for place, names in blocks.items() for name in names if name not in PLACES[place]]:
-        if path.suffix == ".fmu":
-            from ..cosimulation.interface import Interface
-            from ..explorer.module import sources_of
-
-            sources_of(Interface(path, args.limits))
-    given = all_settings(args, args.plant, args.controller)
+    others = [Path(name) for place, names in blocks.items() for name in names if name not in PLACES[place]]
     # here and not above: mistakes and help are answered without them
     import webbrowser
 
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
+    from ..cosimulation.interface import Interface
     from ..explorer.content import content, write_page
-    from ..manoeuvres.for_car import for_car, largest_torque
+    from ..explorer.module import require_possible, sources_of
+    from ..manoeuvres.for_car import largest_torque
     from ..recordings.drive import read_drive
+    from ..recordings.plausibility import of_drive
+    from ..studies.drives.replay import car_of
+    from ..studies.drives.verdict import tell
 
-    first = next(iter(given.values()))
-    catalogue = {name: for_car(each, largest_torque(first)) for name, each in MANOEUVRES.items()}
-    offered, recording = args.manoeuvre.for_car(first).beside(catalogue), None
+    for path in others:
+        if path.suffix == ".fmu":
+            sources_of(Interface(path, args.limits))
+    if not others:
+        require_possible()
     if args.recording is not None:
         recording = read_drive(args.recording, **args.as_read)
+    given = all_settings(args, args.plant, args.controller)
+    first = next(iter(given.values()))
+    T_max = largest_torque(first)
+    if args.recording is not None and recording is not None:
+        tell(of_drive(recording, *car_of(first)), args.recording)
     car = read_vehicle(args.vehicle) if args.vehicle else {}
     gains = read_parameters(args.parameters) if args.parameters else {}
-    write_page(content(given, car, gains, offered, recording), args.output)
+    write_page(content(given, car, gains, offered.with_torque(T_max).manoeuvres, recording, T_max), args.output)
     args.say(f"{args.output}: a page that needs nothing else")
     if not args.no_browser:
         webbrowser.open(args.output.resolve().as_uri())

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from importlib.metadata import version
 from itertools import cycle
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,14 @@ import numpy as np
 from ...fmus.building.one_car import with_estimates
 from ..base.atomic_files import complete
 from ..base.errors import DrivelineError
+from ..base.parameter_words import FORMS, WORDS
 from ..cosimulation.wiring import Fit, fit
-from ..loop.places import PLACES, STEP_SIZE, T_S
+from ..loop.built_fmus import frequency_of_plant
+from ..loop.places import PARAMETERS, PLACES, STEP_SIZE, T_S
 from ..loop.settings import Settings, loop
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.drivable import require_road
+from ..manoeuvres.for_car import share_of
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.road_load import Track
 from ..recordings.drive import Drive
@@ -41,8 +45,16 @@ BESIDE = tuple(color for color, *_ in CONTROLLERS[1:])
 HELD = ("#8ab6d6", "#c3a5cf", "#d8b365")
 """Colours of the runs that are held, which are so many at most."""
 
-FREE = {"T_driver": [[0.0, -12.0], [1.0, -12.0], [1.0, 100.0]], "T_brake": [[0.0, 0.0]], "v_0": 5.0, "duration": 6.0}
-"""The manoeuvre that is drawn by hand, at first."""
+FREE: Mapping[str, Any] = {
+    "T_driver": [[0.0, -12.0], [1.0, -12.0], [1.0, 100.0]],
+    "T_brake": [[0.0, 0.0]],
+    "v_0": 5.0,
+    "duration": 6.0,
+}
+"""The manoeuvre that is drawn by hand, at first, with the default car."""
+
+MOST = 150.0
+"""N.m up and down to which a demand is drawn by hand with the default car."""
 
 Given = Mapping[tuple[str, str], Settings]
 """The settings of the loops by the names of plant and controller."""
@@ -54,6 +66,7 @@ def content(
     gains: Mapping[str, Any] | None = None,
     manoeuvres: Mapping[str, Manoeuvre] = MANOEUVRES,
     recording: Drive | None = None,
+    T_max: float = inf,
 ) -> dict[str, Any]:
     """The data of a page.
 
@@ -61,6 +74,7 @@ def content(
         of_car, gains: entries of the vehicle file and of the file of parameters that the loops were given.
         manoeuvres: that can be chosen, by name.
         recording: a recorded drive that can be chosen too.
+        T_max: largest torque of the motor in N.m; inf: that of the default car.
 
     Raises:
         DrivelineError: there is no module of the loops, a manoeuvre has the name of the recording, or the plant cannot
@@ -76,6 +90,7 @@ def content(
     loops = loops_of({named(*key): fitted for key, fitted in fits.items()}, _are_ours(given))
     first = [fits[plant, controllers[0]] for plant in plants]
     start = {name: value for plant in plants for name, value in given[plant, controllers[0]].parameters.items()}
+    started = {port.name for port in PARAMETERS} | {f"plant.{name}" for m in manoeuvres.values() for name in m.road}
     turned = {"gains": knobs(GAINS, first, start), "car": knobs(CAR, first, start), "road": knobs(ROAD, first, start)}
     return {
         "version": version("driveline-damping"),
@@ -88,11 +103,13 @@ def content(
         "base": {named(*key): _base(settings, fits[key], loops) for key, settings in given.items()},
         "manoeuvres": _recorded(recording, given, controllers[0], plants)
         | {name: _shown(each, plants, first) for name, each in manoeuvres.items()},
-        "free": FREE,
+        **_by_hand(share_of(T_max)),
         "knobs": {kind: [knob._asdict() for knob in found] for kind, found in turned.items()},
         "sport": SPORT,
         "comfort": COMFORT,
-        "follow": following(car),
+        "follow": following(car, frequency_of_plant(next(iter(given.values())))),
+        "set": {name: value for each in given.values() for name, value in each.parameters.items() if name in started},
+        "words": {**WORDS, **FORMS},
         "panels": [
             {"label": label, "curves": [each._asdict() for each in signals]} for label, signals in PANELS.items()
         ],
@@ -110,6 +127,12 @@ def content(
         ],
         "files": {"car": car, "gains": dict(gains or {})},
     }
+
+
+def _by_hand(share: float) -> dict[str, Any]:
+    """The manoeuvre that is drawn by hand, for a motor with this share of the torque of the default car's."""
+    demand = [[t, float(f"{share * T:.3g}")] for t, T in FREE["T_driver"]]
+    return {"free": {**FREE, "T_driver": demand}, "most": float(f"{share * MOST:.2g}")}
 
 
 def write_page(data: Mapping[str, Any], path: Path) -> None:

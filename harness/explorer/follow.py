@@ -5,18 +5,20 @@ swing at frequencies as far apart as those of the default car. All else that fol
 """
 
 from collections.abc import Mapping
-from math import log2
+from math import log, log2
 from typing import Any
 
 from ...fmus.building import one_car
 from ...fmus.building.one_car import DEFAULT_CAR, DESIGN, DETAILED, FOLLOW, SHAFTS
 from ...fmus.building.oscillation import DRY_AND_SMOOTH, SPEED, rolling_torque
+from ..metrics.spectrum import DRIVE_TRAIN, FREQUENCY, own_band
 
 
-def following(known: Mapping[str, Any]) -> dict[str, Any]:
+def following(known: Mapping[str, Any], frequency: float | None = None) -> dict[str, Any]:
     """
     Args:
         known: entries of the vehicle file that was given.
+        frequency: at which the drive train swings where none was, Hz; None: that of the default car.
     """
     car = {name: float(value) for name, value in known.items() if name in DEFAULT_CAR}
     without_shafts = {name: value for name, value in car.items() if name not in SHAFTS}
@@ -26,8 +28,10 @@ def following(known: Mapping[str, Any]) -> dict[str, Any]:
         "shafts": list(SHAFTS),
         "digits": one_car.DIGITS,
         "apart": one_car.frequencies_apart(),
+        "close": log(1.0 + one_car.APART),
         "furthest": one_car.FURTHEST,
         "C": list(one_car.DECLARED["C"][1].bounds()),
+        "band": {"edges": DRIVE_TRAIN, "frequency": FREQUENCY, "unturned": own_band(frequency)},
         "powers": {"known": _powers(car), "without": _powers(without_shafts)},
         "design": _plant(DESIGN, car, "m"),
         "detailed": _plant(DETAILED, car, "F_z0"),

@@ -19,10 +19,11 @@ from ...fmus.native.compiler import FLAGS, WHOLE, CompilerError, compile_in, run
 from ...fmus.native.packaging import build_native
 from ...fmus.origin import sources_digest
 from ..base.atomic_files import complete
+from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError
-from ..base.user_cache import kept, named_as_cache, user_cache
+from ..base.user_cache import is_as_made, kept, named_as_cache, user_cache
 from ..cosimulation.compiled_steps import SOURCE as STEPS
-from ..cosimulation.interface import Interface, type_of
+from ..cosimulation.interface import Interface, type_of, unit_of
 from ..cosimulation.wiring import Fit, fit
 from ..loop.places import NATIVE, PLACES
 from ..loop.settings import Settings
@@ -49,10 +50,6 @@ SOURCES = "sources/"
 
 PACKAGED = HERE / "page" / "loops.json"
 """Of all loops of the project, made when the package is."""
-
-NO_MODULE = (
-    "there is no Zig that makes the loops of a page: pip install ziglang; or install driveline-damping from a wheel"
-)
 
 
 class Module(NamedTuple):
@@ -95,10 +92,28 @@ def standard() -> dict[str, Any]:
     Raises:
         DrivelineError: it is not there, and there is no Zig.
     """
-    made_of = _standard_digest()
-    if PACKAGED.is_file() and (found := json.loads(PACKAGED.read_text(encoding="utf-8")))["made_of"] == made_of:
-        return found
-    return _kept(made_of, _standard)
+    return _packaged() or _kept(_standard_digest(), _standard)
+
+
+def require_possible() -> None:
+    """Looks whether there are the loops of the project, or Zig, before anything is built.
+
+    Raises:
+        DrivelineError: neither is there.
+    """
+    if not (_packaged() or is_as_made(_place(_standard_digest()))):
+        _zig()
+
+
+def _packaged() -> dict[str, Any] | None:
+    """The loops that were made with the package, if they are those of the sources that are here."""
+    found = json.loads(PACKAGED.read_text(encoding="utf-8")) if PACKAGED.is_file() else {}
+    return found if found.get("made_of") == _standard_digest() else None
+
+
+def _place(made_of: str) -> Path:
+    """Of a module in the cache."""
+    return user_cache() / "pages" / made_of[:32] / PACKAGED.name
 
 
 def write_standard(path: Path = PACKAGED) -> None:
@@ -121,11 +136,12 @@ def _kept(made_of: str, make: Callable[[], Module]) -> dict[str, Any]:
     """A module of the cache, which is made where it is not there."""
 
     def write(path: Path) -> None:
+        warn_once("compiling the loops of the page, once for these FMUs: takes half a minute")
         made = make()
         made.content["made_of"] = made_of
         path.write_text(made.packed(), encoding="utf-8")
 
-    path = user_cache() / "pages" / made_of[:32] / PACKAGED.name
+    path = _place(made_of)
     with named_as_cache(path.parents[1]):
         return json.loads(kept(path, write).read_text(encoding="utf-8"))
 
@@ -197,7 +213,7 @@ def sources_of(interface: Interface) -> dict[str, bytes]:
     if WHOLE not in found or interface.fmi != 2:
         raise DrivelineError(
             f"{interface.path}: a page has loops of FMUs that were built from Python by `driveline build`, "
-            "whose C source is in them; "
+            "whose C source is in them (build/native has those); "
             "`driveline compare --report` and `simulate` run every FMU"
         )
     return found
@@ -207,11 +223,18 @@ def _inputs(fitted: Fit) -> list[str]:
     return [port.name for port in fitted.system.inputs if port.name not in fitted.absent]
 
 
-def _linked(sources: Mapping[str, Mapping[str, bytes]], head: str, loops: Sequence[Loop]) -> bytes:
+def _zig() -> list[str]:
     try:
-        zig = [*zig_compiler(), *TARGET]
+        return [*zig_compiler()]
     except CompilerError as reason:
-        raise DrivelineError(NO_MODULE) from reason
+        raise DrivelineError(
+            "there is no Zig that makes the loops of a page: pip install ziglang; or install driveline-damping from a "
+            "wheel"
+        ) from reason
+
+
+def _linked(sources: Mapping[str, Mapping[str, bytes]], head: str, loops: Sequence[Loop]) -> bytes:
+    zig = [*_zig(), *TARGET]
     most = max(each.layout.dtype.itemsize for each in loops)
     defined = (f"-DROWS={ROWS}", f"-DMOST_BYTES={-(-most // 8) * 8}", "-DMOST_ROUNDS=16")
     own = {
@@ -253,6 +276,7 @@ def _fmu(interface: Interface, sources: Mapping[str, bytes]) -> dict[str, Any]:
                 "start": number(v.start),
                 "min": number(v.min),
                 "max": number(v.max),
+                "unit": unit_of(v) or "",
                 "tunable": v.variability == "tunable",
             }
             for v in interface.of_causality("parameter")

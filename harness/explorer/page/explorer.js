@@ -54,7 +54,7 @@ function took(answer) {
   const {number, controller} = answer;
   if (answer.run) kept.set(controller, answer);
   if (!underWay || number !== underWay.number) return;
-  underWay.answers.set(controller, answer.same ? kept.get(controller) : answer);
+  underWay.answers.set(controller, answer.same ? {...kept.get(controller), warnings: answer.warnings} : answer);
   underWay.left.delete(controller);
   if (underWay.left.size) return;
   const done = underWay, refusal = [...done.answers.values()].find(({refused}) => refused);
@@ -73,7 +73,9 @@ function refuse(reason, by) {
 function take({wanted: of, answers}) {
   const moved = !shown || shown.wanted.manoeuvre !== of.manoeuvre || shown.duration !== length(of);
   shown = {wanted: of, duration: length(of), runs: new Map(controllers(of).map((controller) => [controller, answers.get(controller)]))};
-  if (!waiting) say("");
+  const warnings = new Set([unread, ...[...shown.runs.values()].flatMap((each) => each.warnings)].filter(Boolean));
+  if (!waiting) say([...warnings].join("; "), warnings.size > 0);
+  unread = "";
   draw(moved ? window_of(of) : undefined);
 }
 
@@ -151,24 +153,31 @@ function written(of) {
   return `#${found}`;
 }
 
+let unread = ""; // what the link had that the page does not take
+
 function read(hash) {
-  const given = new URLSearchParams(hash.slice(1)), found = structuredClone(start);
-  const one_of = (name, all) => { if (all.includes(given.get(name))) found[name] = given.get(name); };
-  one_of("plant", data.plants);
-  one_of("manoeuvre", [...Object.keys(data.manoeuvres), "free"]);
-  for (const name of ["control", "informed"]) if (given.has(name)) found[name] = given.get(name) === "on";
-  found.typed = given.get("typed") ?? "";
-  found.others = (given.get("with") ?? "").split(",").filter((name) => name in data.others);
+  const given = new URLSearchParams(hash.slice(1)), found = structuredClone(start), known = new Set(), left = [];
+  // Where the link has it: the setting becomes what `as` makes of its text, and is left where that is undefined.
+  const put = (name, as, of = found, key = name) => {
+    known.add(name);
+    if (!given.has(name)) return;
+    const value = as(given.get(name));
+    if (value === undefined) left.push(`${name}=${given.get(name)}`); else of[key] = value;
+  };
+  const one_of = (all) => (text) => (all.includes(text) ? text : undefined);
+  put("plant", one_of(data.plants));
+  put("manoeuvre", one_of([...Object.keys(data.manoeuvres), "free"]));
+  for (const name of ["control", "informed"]) put(name, (text) => ({on: true, off: false})[text]);
+  put("typed", (text) => text);
+  put("with", (text) => (text.split(",").every((name) => name in data.others) ? text.split(",") : undefined), found, "others");
   for (const {name, kind, least, most} of Object.values(knobs)) {
-    const value = Number(given.get(name));
-    if (!given.has(name) || !(value >= least && value <= most)) continue;
-    if (kind) found[kind][name] = value; else found[name] = value;
+    const within = (text) => (text.trim() && text >= least && text <= most ? Number(text) : undefined);
+    put(name, within, kind ? found[kind] : found);
   }
-  for (const [name, key] of [["demand", "T_driver"], ["brake", "T_brake"]]) {
-    const points = parsed(given.get(name) ?? "");
-    if (points) found.free[key] = points;
-  }
-  for (const name of ["v_0", "duration"]) if (given.has(name)) Object.assign(found.free, number_of(name, given.get(name)));
+  for (const [name, key] of [["demand", "T_driver"], ["brake", "T_brake"]]) put(name, (text) => parsed(text) || undefined, found.free, key);
+  for (const name of ["v_0", "duration"]) put(name, (text) => number_of(name, text)?.[name], found.free);
+  left.push(...[...given.keys()].filter((name) => !known.has(name)));
+  unread = left.length ? `left out of the link: ${left.join(", ")}` : "";
   return found;
 }
 
@@ -265,8 +274,6 @@ function knob(parent, {name, low, high, least, most, value, unit, meaning}, kind
   knobs[name] = {name, kind, least, most, refuse};
 }
 
-const short = (value) => String(Number(value.toPrecision(6)));
-
 // Whether a parameter changes nothing of what is shown.
 function idle(name, settings, of_gains) {
   const {loops, fmus} = data.loops, has = (loop, instance) => name in fmus[loops[loop].instances[instance]].parameters;
@@ -349,15 +356,13 @@ function by_hand() {
   });
 }
 
-const MOST = 150; // N.m that the sketch reaches up and down
-
-const x_of = (t) => (300 * t) / wanted.free.duration, y_of = (T) => 60 - (55 * T) / MOST;
+const x_of = (t) => (300 * t) / wanted.free.duration, y_of = (T) => 60 - (55 * T) / data.most;
 
 function place_of(event) {
   const box = get("drawn").getBoundingClientRect();
   const t = ((event.clientX - box.left) / box.width) * wanted.free.duration;
-  const T = ((60 - (120 * (event.clientY - box.top)) / box.height) / 55) * MOST;
-  return [Math.round(20 * Math.min(Math.max(t, 0), wanted.free.duration)) / 20, Math.round(Math.min(Math.max(T, -MOST), MOST))];
+  const T = ((60 - (120 * (event.clientY - box.top)) / box.height) / 55) * data.most;
+  return [Math.round(20 * Math.min(Math.max(t, 0), wanted.free.duration)) / 20, Math.round(Math.min(Math.max(T, -data.most), data.most))];
 }
 
 function move(points, entry) {
@@ -375,7 +380,7 @@ function sketch({T_driver, duration}) {
   };
   svg.replaceChildren();
   of("line", {x1: 0, x2: 300, y1: 60, y2: 60});
-  of("text", {x: 2, y: 10}).textContent = `${MOST} N.m`;
+  of("text", {x: 2, y: 10}).textContent = `${data.most} N.m`;
   of("text", {x: 298, y: 116, "text-anchor": "end"}).textContent = `${duration} s`;
   const last = T_driver.at(-1), corners = [...T_driver, [duration, last[1]]];
   of("polyline", {points: corners.map(([t, T]) => `${x_of(t)},${y_of(T)}`).join(" ")});

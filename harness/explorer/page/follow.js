@@ -27,20 +27,29 @@ class Followers {
     return Object.fromEntries([...changed, ...back]);
   }
 
+  // That of the drive train of the car, in Hz; where nothing is told of it that of the default car.
+  band(turned, changes, detailed) {
+    const {known, usual, band} = this.data;
+    if (![known, turned].some((told) => Object.keys(told).length)) return band.unturned;
+    const {C, J_1, J_2} = {...usual, ...this.before(detailed), ...changes};
+    const frequency = Math.sqrt(C * (1 / J_1 + 1 / J_2)) / (2 * Math.PI);
+    return band.edges.map((edge) => Number(((edge * frequency) / band.frequency).toFixed(1)));
+  }
+
   // The entries with what follows from them.
   all(car, powers, detailed) {
     const {shafts, apart, furthest, usual} = this.data, has = shafts.some((name) => name in car);
     let found = {...car}, factor = 1;
     if (has && !("C" in car)) {
       const wanted = this.frequency("detailed", this.detailed(car, powers, 1)) / apart;
-      found.C = this.solved("C", (C) => this.frequency("design", {...car, C}), wanted, ...this.data.C);
+      found.C = this.solved(car, "design", (C) => this.frequency("design", {...car, C}), wanted, ...this.data.C);
     } else if (detailed && !has && Object.keys(car).length) {
-      const wanted = this.frequency("design", car) * apart, C = car.C ?? usual.C;
+      const wanted = this.frequency("design", car) * apart;
       const of = (by) => this.frequency("detailed", this.detailed(car, powers, by));
       const bounds = this.loops.content.fmus[this.data.detailed.fmu].parameters;
       const low = Math.max(1 / furthest, ...shafts.map((name) => bounds[name].min / usual[name]));
       const high = Math.min(furthest, ...shafts.map((name) => bounds[name].max / usual[name]));
-      factor = this.solved(`C = ${Number(C.toPrecision(6))} N.m/rad: k_s`, of, wanted, low, high);
+      factor = this.solved({C: usual.C, ...car}, "detailed", of, wanted, low, high);
     }
     if (detailed) found = {...this.detailed(car, powers, factor), ...found};
     found = Object.fromEntries(Object.entries(found).map(([name, value]) =>
@@ -73,27 +82,28 @@ class Followers {
   }
 
   // The value between low and high at which a frequency that grows with it is the one that is wanted.
-  solved(what, frequency, wanted, low, high) {
+  solved(car, which, frequency, wanted, low, high) {
     const missed = (x) => Math.log(frequency(Math.exp(x)) / wanted);
-    let [a, b] = [Math.log(low), Math.log(high)], before = this.found?.[low] ?? (a + b) / 2, was = missed(before), x = before - 2 * was;
-    for (let k = 0; k < 8 && x >= a && x <= b; k++) {
-      const now = missed(x);
+    let [a, b] = [Math.log(low), Math.log(high)], before = this.found?.[low] ?? (a + b) / 2, was = missed(before), next = before - 2 * was;
+    for (let k = 0; k < 8 && next >= a && next <= b; k++) {
+      const x = next, now = missed(x);
       if (now === was) break;
-      const next = x - (now * (x - before)) / (now - was);
-      [before, was, x] = [x, now, next];
-      if (Math.abs(x - before) > 1e-6) continue;
-      this.found = {[low]: x}; // the next car is not far
-      return Math.exp(x);
+      next = x - (now * (x - before)) / (now - was);
+      [before, was] = [x, now];
+      if (Math.abs(next - x) > 1e-6) continue;
+      this.found = {[low]: next}; // the next car is not far
+      return Math.exp(next);
     }
     const [least, most] = [frequency(low), frequency(high)], Hz = (f) => Number(f.toPrecision(3));
-    if (!(least <= wanted && wanted <= most))
-      throw new Refused(`${what} does not follow: the frequency of the drive train would have to be ${Hz(wanted)} Hz, ` +
-        `and can be ${Hz(least)} to ${Hz(most)} Hz`);
     while (b - a > 1e-10) {
       const middle = (a + b) / 2;
       if (missed(middle) < 0) a = middle; else b = middle;
     }
-    return Math.exp((a + b) / 2);
+    const x = (a + b) / 2, leaps = Math.abs(missed(x)) > this.data.close; // to another mode
+    if (least <= wanted && wanted <= most && !leaps) return Math.exp(x);
+    const given = ["C", ...this.data.shafts].filter((name) => name in car).map((name) => `${name} = ${Hz(car[name])} N.m/rad`);
+    throw new Refused(`${given.join(", ")}: the frequency of the drive train would have to be ${Hz(wanted)} Hz, and that of ` +
+      `${this.data[which].fmu} can be ${Hz(least)} to ${Hz(most)} Hz`);
   }
 }
 

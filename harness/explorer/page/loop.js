@@ -70,9 +70,9 @@ class Loops {
   *found(name, parameters, step) {
     const places = Object.entries(this.content.loops[name].instances);
     for (const [key, value] of Object.entries(parameters)) {
-      const [path, since] = key.split("@"), [place, parameter] = path.split(".");
+      const [path, since] = key.split("@"), [place, ...parameter] = path.split(".");
       const number = places.findIndex(([each]) => each === place);
-      const declared = number < 0 ? undefined : this.content.fmus[places[number][1]].parameters[parameter];
+      const declared = number < 0 ? undefined : this.content.fmus[places[number][1]].parameters[parameter.join(".")];
       if (declared) yield {at: since === undefined ? -1 : Math.ceil(Number(since) / step - 1e-6), number, declared, value};
     }
   }

@@ -3,8 +3,8 @@
 
 const TO_SETTLE = {span: 0.2, settled: 0.05, fitted: 0.9, least: 0.1}, WINDOW = [-0.2, 4], WITHHELD = 2;
 
-// Of the columns of a run, and of these at the samples of the controller, T_s apart, for the manoeuvre.
-function metrics(run, sampled, {t_0, dT}, T_s) {
+// Of the columns of a run, and of these at the samples of the controller, T_s apart, for the manoeuvre, and a band in Hz.
+function metrics(run, sampled, {t_0, dT}, T_s, band) {
   const t = sampled.time, T_gear = sampled["plant.T_gear"], demand = sampled["controller.T_driver"];
   const piece = (x, from, to) => x.slice(first(t, from - 1e-9), first(t, to + 1e-9, true));
   const windowed = (x) => (dT === null ? x : piece(x, t_0 + WINDOW[0], t_0 + WINDOW[1]));
@@ -12,7 +12,7 @@ function metrics(run, sampled, {t_0, dT}, T_s) {
   return {
     settling_time: isStep ? settlingTime(T_gear, T_s, t_0, dT) : NaN,
     overshoot: isStep ? overshoot(t, T_gear, T_s, t_0, dT) : NaN,
-    ...bandRms(windowed(T_gear), windowed(sampled["plant.a_body"]), T_s),
+    ...bandRms(windowed(T_gear), windowed(sampled["plant.a_body"]), T_s, band),
     impact_speed: impactSpeed(run, t_0),
     withheld_time: isStep ? -(sum(piece(e, t_0, t_0 + WITHHELD)) * T_s) / dT + 0 : NaN,
   };
@@ -97,11 +97,11 @@ function line(t, y, begin) {
   return [mean - (up / down) * middle, up / down];
 }
 
-// The rms of the parts of the gear torque and of the derivative of the acceleration from 5 to 50 Hz, the lines from first
+// The rms of the parts of the gear torque and of the derivative of the acceleration within a band, the lines from first
 // to last sample subtracted. Both are transformed at once, as real and imaginary part.
-function bandRms(T, a, T_s) {
-  const n = T.length, low = Math.ceil(5 * n * T_s - 1e-9), high = Math.min(Math.floor(50 * n * T_s + 1e-9), n >> 1);
-  if (5 * n * T_s < 1) return {gear_torque_rms: NaN, jerk_rms: NaN};
+function bandRms(T, a, T_s, [least, most]) {
+  const n = T.length, low = Math.ceil(least * n * T_s - 1e-9), high = Math.min(Math.floor(most * n * T_s + 1e-9), n >> 1);
+  if (least * n * T_s < 1) return {gear_torque_rms: NaN, jerk_rms: NaN};
   const level = (x) => x.map((value, k) => value - (x[0] + ((x[n - 1] - x[0]) * k) / (n - 1)));
   const {real, imaginary} = transform(level(T), level(a));
   let [torque, jerk] = [0, 0];

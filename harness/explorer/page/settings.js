@@ -1,16 +1,30 @@
 "use strict";
 // What settings of the page mean for a run: text, gains, and the manoeuvre that is drawn by hand.
 
-// What is typed, as in "plant.mu=0.3, controller.k_d@2=1.5".
-function typed(text) {
+const short = (value) => String(Number(value.toPrecision(6)));
+
+// One of the words that the command line has for parameters too, with what stands there in braces.
+const said = (words, what, of) => words[what].replace(/\{(\w+)\}/g, (_, name) => (typeof of[name] === "number" ? short(of[name]) : of[name]));
+
+// What is typed, as in "plant.mu=0.3, controller.k_d@2=1.5", by the rules of --set.
+function typed(text, words) {
   const found = {};
-  for (const part of text.split(",").filter((each) => each.trim())) {
-    const [name, value, more] = part.split("=").map((each) => each.trim());
-    if (!/^\w+\.[\w.]+(@[\d.]+)?$/.test(name) || !value || !Number.isFinite(Number(value)) || more !== undefined)
-      throw new Refused(`${part.trim()} is not of the form plant.mu=0.3`);
-    found[name] = Number(value);
+  for (const part of text.split(",").map((each) => each.trim()).filter(Boolean)) {
+    const [name, given, ...more] = part.split("=").map((each) => each.trim());
+    const value = {true: 1, false: 0}[given?.toLowerCase()] ?? Number(given || NaN);
+    if (!/^[^.]+\../.test(name) || Number.isNaN(value) || more.length)
+      throw new Refused(said(words, "form", {text: `'${part}'`, form: words[name.includes("@") ? "changed" : "constant"]}));
+    if (!Number.isFinite(value)) throw new Refused(said(words, "finite", {text: `'${part}'`}));
+    if ((found[name] ?? value) !== value) throw new Refused(said(words, "twice", {name, before: found[name], value}));
+    found[name] = value;
   }
   return found;
+}
+
+// Name and time of "instance.parameter@t".
+function parted(key) {
+  const [name, ...since] = key.split("@").map((each) => each.trim()), [instance, ...own] = name.split(".");
+  return {name, instance, own: own.join("."), since: since.length ? Number(since.join("@") || NaN) : undefined};
 }
 
 // The gains that were turned, and by the character, as far as sliders go.
@@ -48,5 +62,5 @@ function freeManoeuvre({T_driver, T_brake, v_0, duration}) {
 
 if (typeof module !== "undefined") {
   for (const name of ["signal", "Refused"]) globalThis[name] ??= require("./loop.js")[name];
-  module.exports = {typed, turnedGains, stepOf, freeManoeuvre};
+  module.exports = {short, said, typed, parted, turnedGains, stepOf, freeManoeuvre};
 }

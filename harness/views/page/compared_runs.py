@@ -121,7 +121,4 @@ def _spectra(runs: Runs) -> list[Panel]:
         amplitudes.append(Curve(f, amplitude_spectrum(T_gear, T_S)[1][at], name, *looks[name]))
         ratios.append(Curve(f, np.interp(f, g, np.abs(answer)), name, *looks[name]))
     amplitudes.append(Curve(f, amplitude[at], "demand", BLACK, DASHED, 0.7))
-    return [
-        Panel("gear torque in N·m", amplitudes, scale="log"),
-        Panel("gear torque over demand", ratios, scale="log"),
-    ]
+    return [Panel("gear torque in N·m", amplitudes, scale="log"), Panel("gear torque over demand", ratios, scale="log")]

@@ -1,8 +1,8 @@
 "use strict";
 // Figures of panels that are data (figures.py): curves, zoom, legends, for reports and the explorer alike.
 
-const HEIGHT = 170, BELOW = 46, LEFT = 62; // of a panel, of its abscissa and of its ordinate, in pixels
-const DARK = {black: "#e8e8e8", "#0072B2": "#4ba6e0", "#cccccc": "#444444", "#999999": "#8f8f8f"};
+const HEIGHT = 170, BELOW = 46, LEFT = 72; // of a panel, of its abscissa and of its ordinate, in pixels
+const DARK = {black: "#e8e8e8", "#0072B2": "#4ba6e0", "#882255": "#b8406f", "#cccccc": "#444444", "#999999": "#8f8f8f"};
 
 const get = (id) => document.getElementById(id);
 

@@ -10,7 +10,7 @@ const answers = questions.map(({wanted, controller}, number) => {
   try {
     const answer = finished(answerer.answer(settings, controller));
     if (answer.run) writeFileSync(join(folder, `${number} plant.T_gear`), answer.run["plant.T_gear"]);
-    return {same: Boolean(answer.same), worth: answer.worth, gains: turnedGains(data, settings)};
+    return {same: Boolean(answer.same), worth: answer.worth, warnings: answer.warnings, gains: turnedGains(data, settings)};
   } catch (reason) {
     return {refused: reason.message};
   }

@@ -13,6 +13,7 @@ import pytest
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.explorer.module import standard
 from driveline.harness.loop.places import STEP_SIZE, T_S
+from driveline.harness.metrics.spectrum import DRIVE_TRAIN
 
 SCRIPTS = Path(standard.__code__.co_filename).parent / "page"
 
@@ -43,7 +44,14 @@ def in_node(script: str, folder: Path, asked: Any) -> Any:
 
 def runs_and_cars(folder: Path, cases: Sequence[Any] = (), cars: Sequence[Any] = ()) -> Any:
     """What the module makes of runs, whose columns are in files of the folder then, and of cars."""
-    asked = {"loops": loops(), "cases": list(cases), "cars": list(cars), "T_s": T_S, "step": STEP_SIZE}
+    asked = {
+        "loops": loops(),
+        "cases": list(cases),
+        "cars": list(cars),
+        "T_s": T_S,
+        "step": STEP_SIZE,
+        "band": DRIVE_TRAIN,
+    }
     return in_node("run_loops.js", folder, asked)
 
 

@@ -130,7 +130,10 @@ def test_what_follows_from_a_car_follows_as_in_a_vehicle_file(tmp_path: Path) ->
                 one_car.of_one_car(car, {*FOLLOW, *DEFAULT_CAR}) for car in (known, one_car.updated(known, turned))
             )
         except ParameterFileError:
-            assert "k_s does not follow: the frequency of the drive train would have to be 12 Hz" in found["refused"]
+            assert (
+                "the frequency of the drive train would have to be 12 Hz, and that of ValidationVehicle can be"
+                in found["refused"]
+            )
         else:
             changed = {name: value for name, value in after.items() if before.get(name) != value}
             back = {name: DEFAULT_CAR[name] for name in before.keys() - after.keys()}
