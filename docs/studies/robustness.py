@@ -24,11 +24,14 @@ DRAWN = "tipin15"
 OURS = PLACES["controller"][0]
 CONTROLLERS = (OURS, *COMPARATORS)
 
+LISTED = {name: of for name, of in SHOWN.items() if name not in ("response_delay", "stationary_torque_change")}
+"""In the columns of a table; draws are compared in all."""
+
 COLUMNS = (
     *(Column(name, "%", 1) for name in ("bounded and quiet", "good")),
     *(
         Column(f"{column.plain_heading}, {100 * level:g} %", column.unit, column.decimals)
-        for column in SHOWN.values()
+        for column in LISTED.values()
         for level in LEVELS
     ),
 )
@@ -45,7 +48,7 @@ def summary_table(found: Sequence[Summary]) -> Table:
     """A row for each controller: shares of the runs, and what half and 95 % of them do not exceed."""
     rows: dict[str, tuple[Cell, ...]] = {}
     for each in found:
-        levels = ((each.level(name, level) * of.factor) for name, of in SHOWN.items() for level in LEVELS)
+        levels = ((each.level(name, level) * of.factor) for name, of in LISTED.items() for level in LEVELS)
         shares = (100.0 * each.share(verdict) for verdict in ("stable", "good"))
         rows[each.controller] = (*shares, *(None if isinf(value) else value for value in levels))
     return Table("controller", COLUMNS, rows)

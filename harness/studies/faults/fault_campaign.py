@@ -70,14 +70,19 @@ def plan_of(outcomes: Sequence[Outcome]) -> Plan:
     return outcomes[0].case.plan if outcomes else PLANS["dry"]
 
 
+MOST_NAMED = 9
+"""Kinds of faults that no case has, which are named."""
+
+
 def coverage(outcomes: Sequence[Outcome]) -> str:
-    """Which kinds of the campaign are no single fault of a case, in words; "" where all are."""
+    """Which kinds of the campaign are no single fault of a case, in words, or how many; "" where all are."""
     kinds = [kind for kind in plan_of(outcomes).kinds if kind != NOTHING.name]
     alone = {outcome.kinds for outcome in outcomes}
     missing = [kind for kind in kinds if (kind,) not in alone]
     if not missing:
         return ""
-    return f"Single faults are of {len(kinds) - len(missing)} of {len(kinds)} kinds; without {', '.join(missing)}."
+    lacking = f"; without {', '.join(missing)}" if len(missing) <= MOST_NAMED else ""
+    return f"Single faults are of {len(kinds) - len(missing)} of {len(kinds)} kinds{lacking}."
 
 
 def campaign(

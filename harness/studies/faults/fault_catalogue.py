@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import combinations
+from math import exp, log
 
 import numpy as np
 
@@ -30,8 +31,8 @@ def uniform(low: float, high: float) -> Draw:
 
 
 def by_ratio(low: float, high: float) -> Draw:
-    """Uniform in the logarithm."""
-    return lambda rng: float(np.exp(rng.uniform(np.log(low), np.log(high))))
+    """Uniform in the logarithm. The functions of numpy have other last digits on other processors."""
+    return lambda rng: exp(rng.uniform(log(low), log(high)))
 
 
 def either_sign(draw: Draw) -> Draw:

@@ -15,8 +15,8 @@ from ...cosimulation.experiment import Experiment
 from ...cosimulation.runs import run
 from ...cosimulation.system import Connection, Port, System
 from ...cosimulation.wiring import Fit, fit
+from ...loop.built_fmus import warn_of_stale
 from ...loop.settings import Settings, loop, running
-from ...loop.stale_fmus import warn_of_stale
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.parts import Sum

@@ -109,11 +109,12 @@ def announce(
         )
     for each, after in zip_longest(shown, shown[1:]):
         origin = f"{each.origin} ({each.source})" if each.source else each.origin
-        value = str(each.value).lower() if isinstance(each.value, bool) else f"{each.value:.6g}"
+        number, unit = (degrees(each.value), "deg") if each.name == "gap" else (each.value, each.unit)
+        value = str(number).lower() if isinstance(number, bool) else f"{number:.6g}"
         blocks = ", ".join(SHORT.get(name, name) for name in each.blocks)
         rest = (blocks, each.meaning) if every else (each.meaning, *worth.get(each.name, ("", "")))
         table.add_row(
-            each.name, value, printed(each.unit), origin, *rest, end_section=bool(after and after.origin != each.origin)
+            each.name, value, printed(unit), origin, *rest, end_section=bool(after and after.origin != each.origin)
         )
     print_table(table)
     if not every:

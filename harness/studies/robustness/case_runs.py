@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...base.collected_warnings import warn_once
 from ...base.errors import RunEnded, SimulationError, UnpackingError
 from ...base.plain_text import plain
 from ...cosimulation.results import Results
@@ -51,6 +52,9 @@ class CaseRunner:
     def __init__(self, given: Given, seed: int) -> None:
         self.seed = seed
         self.loops = {key: _loop(settings) for key, settings in given.items()}
+        for (plant, _), one in self.loops.items():
+            if not any(name.startswith("plant.") for name in changed(one.blocks, draw(1, seed).deviation)):
+                warn_once(f"{plant} has no parameter that is drawn: all cars are the same one, with other sensors")
 
     def results(self, case: Case, control: bool = True) -> Results:
         """The signals of a case.

@@ -1,5 +1,6 @@
 """What is drawn: a car with its sensors, which follows from the seed of a campaign and its own number."""
 
+from math import log2
 from typing import NamedTuple
 
 import numpy as np
@@ -35,6 +36,7 @@ def draw(number: int, seed: int) -> Draw:
 
 
 def _in(bounds: tuple[float, float], by_logarithm: bool, rng: np.random.Generator) -> float:
-    if by_logarithm:
-        return float(np.exp2(rng.uniform(*np.log2(bounds))))
-    return float(rng.uniform(*bounds))
+    low, high = bounds
+    if by_logarithm:  # by math, as numpy's functions have other last digits on other processors
+        return 2.0 ** rng.uniform(log2(low), log2(high))
+    return rng.uniform(low, high)

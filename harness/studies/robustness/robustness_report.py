@@ -9,6 +9,7 @@ from rich.table import Table
 
 from ...base.csv_file import write_csv, write_rows
 from ...base.errors import SimulationError
+from ...base.plain_text import printed
 from ...design.uncertainty_box import Deviation
 from ...views.metrics_table import write_metrics
 from ...views.terminal import print_table
@@ -31,7 +32,7 @@ def announce(outcomes: Sequence[Outcome]) -> None:
         table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=0)
         table.add_column("controller", no_wrap=True)
         for heading, unit in (("bounded\nand quiet", "%"), ("\ngood", "%"), *(SHOWN[name][:2] for name in BRIEF)):
-            table.add_column(f"{heading}\n{unit}", justify="right", no_wrap=True)
+            table.add_column(f"{heading}\n{printed(unit)}", justify="right", no_wrap=True)
         for k, summary in enumerate(its):
             if k == 0 or summary.manoeuvre != its[k - 1].manoeuvre:
                 table.add_section()
