@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from driveline.fmus.building.parameter_files import read_parameters
+from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.design.character import factors
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
@@ -129,10 +130,13 @@ def measured(run: Run, parameters: Mapping[str, Any], settings: Settings | None 
     return evaluate(results, manoeuvre)
 
 
-def all_measured(parameters: Mapping[str, Any], goals: tuple[Goal, ...] = GOALS) -> dict[Run, Metrics]:
-    """The metrics of all runs with these parameters of the controller, made on all cores."""
+def all_measured(
+    parameters: Mapping[str, Any], goals: tuple[Goal, ...] = GOALS, settings: Settings | None = None
+) -> dict[Run, Metrics]:
+    """The metrics of all runs with these parameters of the controller, else with the settings, made on all cores."""
     todo = runs(goals)
-    return dict(zip(todo, run_many(lambda run: measured(run, parameters), todo, label="goals"), strict=True))
+    found = run_many(lambda run: measured(run, parameters, settings), todo, label="goals")
+    return dict(zip(todo, found, strict=True))
 
 
 def reached(goal: Goal, plant: str, found: Mapping[Run, Metrics]) -> float:
@@ -218,16 +222,20 @@ def trade_table(of_characters: Mapping[str, Reached]) -> Table:
 
 def measure() -> Measured:
     all_of = {name: all_reached(all_measured(of_character(value))) for name, value in CHARACTERS.items()}
-    values = all_of["as designed"]
-    count = {"goals": (len(values),), "missed": (len(missed(values)),)}
+    values, late = all_of["as designed"], all_reached(all_measured({}, settings=LATE))
+    count = {"goals": len(values), "missed": len(missed(values)), "missed late": len(missed(late))}
     return Measured(
         {
             "reached": reached_table(values),
+            "late": reached_table(late),
             "trade": trade_table(all_of),
-            "count": Table("", (Column("count", decimals=0),), count),
+            "count": Table("", (Column("count", decimals=0),), {name: (n,) for name, n in count.items()}),
         }
     )
 
+
+LATE = Settings(scheme=Scheme.JACOBI)
+"""Each signal reaches the block that it feeds one step late, as in hosts that step all FMUs side by side."""
 
 SENTINELS = tuple(goal for goal in GOALS if goal.manoeuvre == "tipin15" and goal.deviation == NOMINAL)
 

@@ -218,11 +218,16 @@ def ratios(each: Run, settings: Settings, injectors: Mapping[bool, Path]) -> Rat
 
 
 def measured(
-    runs: Sequence[Run], controller: str, label: str, folder: Path = BUILD, workers: int | None = None
+    runs: Sequence[Run],
+    controller: str,
+    label: str,
+    folder: Path = BUILD,
+    workers: int | None = None,
+    parameters: Mapping[str, float] | None = None,
 ) -> list[Ratios]:
-    """The ratios of all runs with a controller, in their order, with the FMUs in `folder`."""
+    """The ratios of all runs with a controller, in their order, with the FMUs in `folder` and these parameters."""
     injectors = {key: made_if_missing(fmu, folder, NATIVE).absolute() for key, fmu in INJECTORS.items()}
-    settings = built(PLANT, controller=controller, folder=folder, build=NATIVE)
+    settings = built(PLANT, controller=controller, folder=folder, build=NATIVE, parameters=parameters)
     return run_many(partial(ratios, settings=settings, injectors=injectors), runs, workers, label)
 
 
@@ -249,6 +254,9 @@ def by_group(runs: Sequence[Run], found: Sequence[Ratios]) -> dict[str, list[tup
         groups.setdefault(each.group, []).append((each, y))
     return groups
 
+
+DRIFTS = (0.55, 0.7)
+"""Of `slip_drift`, above what it is: a motor that is late is no slip yet."""
 
 CONTROLLERS = (OURS, *(name for name in COMPARATORS if name != "NoDamping"))
 
@@ -292,10 +300,17 @@ def measure() -> Measured:
         (study, controller): measured(runs[study], controller, f"{controller}, {study}")
         for study, controller in product(STUDIES, CONTROLLERS)
     }
+    drifts = {
+        f"slip_drift {value:g}": numbers(
+            measured(runs["grip"], OURS, f"slip_drift {value:g}", parameters={"controller.slip_drift": value})
+        )
+        for value in DRIFTS
+    }
     slippery = [*runs["grip"], *runs["abs"]]
     return Measured(
         {
             "controllers": controllers_table(found),
+            "drifts": Table("grip", (*NUMBERS, *OVER), drifts),
             "groups": groups_table(slippery, [*found["grip", OURS], *found["abs", OURS]]),
             "frames": frames_table(runs["frames"], {name: found["frames", name] for name in CONTROLLERS}),
             "runs": runs_table(slippery, [*found["grip", OURS], *found["abs", OURS]])._replace(note="With ours."),

@@ -5,18 +5,15 @@ Costs are over those of the gains that are computed for the car; the defaults of
 
 from collections.abc import Iterable, Sequence
 
-import numpy as np
-
 from driveline.harness.base.progress import progress
 from driveline.harness.design.search.controller_cost import Costs
 from driveline.harness.design.search.cost_evaluation import CostEvaluation
-from driveline.harness.design.search.parameter_search import Evaluated, Search, best, front
+from driveline.harness.design.search.parameter_search import Evaluated, Search, best
+from driveline.harness.design.search.pareto_figure import front_drawing
 from driveline.harness.design.search.search_space import Space, declared_parameters, space
 from driveline.harness.design.search.tuning_runs import RUNS, Run
 from driveline.harness.loop.places import COMPARATORS, PLACES
 from driveline.harness.loop.settings import Settings
-from driveline.harness.views.colours import BLACK, BLUE, GREEN, GREY, VERMILION
-from driveline.harness.views.panels import DASHED, DOTTED, SOLID, Axis, Curve, Drawing, Panel, Points
 
 from .study import Cell, Column, Measured, Study, Table
 
@@ -29,20 +26,13 @@ CHARACTERS = {"sport": 0.0, "0.25": 0.25, "balanced": 0.5, "0.75": 0.75, "comfor
 SEARCHED = tuple(name for name in COMPARATORS if name not in ("NoDamping", "TrueMotion"))
 """The others that have parameters of their own to search."""
 
+MARKED = {name: CHARACTERS[name] for name in ("sport", "balanced", "comfort")}
+"""Of these in the figure."""
+
 FEW = RUNS[:4]
 """Runs of which the sentinel is."""
 
 COSTS = tuple(Column(name, "", 3) for name in ("cost", *Costs._fields))
-MARKS = {
-    "sport": (VERMILION, 7.0),
-    "balanced": (GREEN, 7.0),
-    "comfort": (BLUE, 7.0),
-    "start": (BLACK, 7.0, "square"),
-}
-"""Of the choices in the figure."""
-
-CHOICES = np.linspace(0.0, 1.0, 41)
-STYLES = tuple((color, dashes) for dashes in (SOLID, DASHED, DOTTED) for color in (BLUE, VERMILION, GREEN, BLACK))
 
 
 def _cost(costs: Costs, character: float = 0.5) -> tuple[Cell, ...]:
@@ -70,42 +60,6 @@ def defaults_table(controllers: Iterable[str], runs: Sequence[Run]) -> Table:
     return Table("controller", (Column("parameters searched", "", 0), *COSTS), rows)
 
 
-def _at(costs: Iterable[Costs]) -> tuple[np.ndarray, np.ndarray]:
-    each = list(costs)
-    return np.array([of.comfort for of in each]), np.array([of.response for of in each])
-
-
-def _around(values: np.ndarray) -> tuple[float, float]:
-    margin = 0.25 * np.ptp(values) + 0.02
-    return float(values.min() - margin), float(values.max() + margin)
-
-
-def front_drawing(visited: Sequence[Evaluated], where: Space) -> Drawing:
-    """Comfort against response, with the front of the candidates; and the parameters along it."""
-    marked = {name: best(visited, character).costs for name, character in CHARACTERS.items() if name in MARKS}
-    marked["start"] = visited[0].costs
-    comfort, response = _at(marked.values())
-    x, y = _at(each.costs for each in front(visited))
-    costs = [
-        Points(*_at(each.costs for each in visited), "candidates", GREY, 2.0),
-        Curve(x, y, "front", BLACK, width=0.8, held=True),
-        *(Points(*_at([of]), name, *MARKS[name]) for name, of in marked.items()),
-    ]
-    along = [best(visited, choice).values for choice in CHOICES]
-    shares = [
-        Curve(CHOICES, np.array([values[k] / each.start for values in along]), each.name, color, dashes, held=True)
-        for k, (each, (color, dashes)) in enumerate(zip(where.searched, STYLES, strict=False))
-    ]
-    left = Axis("comfort: overshoot and jerk", _around(comfort))
-    right = Axis("character, from sport to comfort", (0.0, 1.0))
-    rows = [
-        [Panel("response: 90 % time\nand torque withheld", costs, bounds=_around(response), x=left)],
-        [Panel("parameter over its start", shares, columns=4, x=right)],
-    ]
-    title = f"{OURS}: {len(visited)} candidates, costs over those of the computed gains"
-    return Drawing(rows, right, title, size=(7.2, 2.8), same_y=False)
-
-
 def measure() -> Measured:
     where = space(OURS, {})
     with CostEvaluation(Settings()).opened() as costs_of, progress(EVALUATIONS, "searching") as done:
@@ -116,7 +70,7 @@ def measure() -> Measured:
             "defaults": defaults_table(SEARCHED, RUNS),
             "few_runs": defaults_table(SEARCHED[:1], FEW),
         },
-        {"front": front_drawing(visited, where)},
+        {"front": front_drawing(visited, where, MARKED, f"{OURS}, costs over those of the computed gains")},
     )
 
 

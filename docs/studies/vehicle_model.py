@@ -15,35 +15,38 @@ from .study import Measured, Study, Table
 
 PLANT, MANOEUVRE = PLANTS[1], MANOEUVRES["tipin15"]
 
-EFFECTS = (
-    None,
-    ("motor.t_dead", 0.002),
-    ("motor.t_dead", 0.005),
-    ("motor.t_dead", 0.01),
-    ("motor.dT_max", 2000.0),
-    ("motor.dT_max", 1000.0),
-    ("motor.omega_base", 60.0),
-    ("plant.g_muL", 0.15),
+LATE = {"motor.t_dead": 0.01}
+
+EFFECTS: tuple[dict[str, float], ...] = (
+    {},
+    {"motor.t_dead": 0.002},
+    {"motor.t_dead": 0.005},
+    LATE,
+    {"motor.dT_max": 2000.0},
+    {"motor.dT_max": 1000.0},
+    {"motor.omega_base": 60.0},
+    {"plant.g_muL": 0.15},
 )
-"""A parameter that is set, and to what."""
+"""Parameters that are set, and to what."""
 
 
 class Run(NamedTuple):
     """An effect, without or with damping."""
 
-    effect: tuple[str, float] | None
+    effect: dict[str, float]
     control: bool
 
     def __str__(self) -> str:
-        return f"{'{}={:g}'.format(*self.effect) if self.effect else 'nothing'}, {'on' if self.control else 'off'}"
+        effect = ", ".join(f"{name}={value:g}" for name, value in self.effect.items())
+        return f"{effect or 'nothing'}, {'on' if self.control else 'off'}"
 
 
 RUNS = [Run(effect, control) for effect in EFFECTS for control in (False, True)]
+RUNS.insert(RUNS.index(Run(LATE, True)) + 1, Run({**LATE, "controller.slip_drift": 0.7}, True))
 
 
 def measured(run: Run) -> Metrics:
-    parameters = dict([run.effect] if run.effect else [])
-    return evaluate(simulate(MANOEUVRE, PLANT, control=run.control, parameters=parameters), MANOEUVRE)
+    return evaluate(simulate(MANOEUVRE, PLANT, control=run.control, parameters=run.effect), MANOEUVRE)
 
 
 def effects_table(runs: Iterable[Run]) -> Table:

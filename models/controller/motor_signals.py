@@ -12,7 +12,7 @@ by T_frame with every frame. It is forgotten as two clocks part.
 from typing import Annotated, NamedTuple
 
 from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, logical_or, maximum, minimum, where
+from ..block.operators import logical_and, logical_not, logical_or, maximum, where
 from ..physics.vehicle import added_speed
 from . import torque_loop
 from .causes import FRAME_LATE, SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE
@@ -79,7 +79,7 @@ def update(
         trusted: whether the motor signals were trusted until now.
     """
     most, age = p.jump * added_speed(p, T_s), age_of_frame(x, u, T_s, p)
-    near = minimum(abs(u.omega_1_meas - x.omega_1), abs(u.omega_1_meas - expected)) <= most
+    near = logical_or(abs(u.omega_1_meas - x.omega_1) <= most, abs(u.omega_1_meas - expected) <= most)
     ranges = logical_or(in_range(u.omega_1_meas, p.omega_max), near)  # wheels that spin get there step by step
     omega_1 = where(ranges, u.omega_1_meas, expected)
     change, waited = omega_1 - x.received, x.received != x.omega_1

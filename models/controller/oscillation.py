@@ -44,7 +44,7 @@ def update(x: SwingState, damping: float, change: float, acting: bool, T_s: floa
     enough = where(turned, p.swing_decay * abs(x.peak), x.enough)
     counts = logical_and(enough > 0.0, abs(peak) >= enough)
     least = T_s / where(x.count < SWINGS, p.t_forget, p.t_relapse)
-    forgotten = x.count - clip(x.count, -least, least)
+    forgotten = where(x.count > 0.0, maximum(x.count - least, 0.0), minimum(x.count + least, 0.0))
     explained = abs(change) / (p.demand_excuse * (abs(peak) + p.swing * p.T_max))
     count = minimum(maximum(forgotten - explained, -AHEAD) + where(counts, 1.0, 0.0), LONGEST)
     return SwingState(

@@ -136,7 +136,8 @@ def take_motor_speed(x: EstimatorState, omega_1: float, slips: bool, T_s: float,
     drift = x.drift - T_s / p.t_drift * (e.omega_1 + x.drift)
     slip = where(slips, 1.0, maximum(slipping(drift, e.T_l, T_s, p), x.slip - T_s / p.t_grip))
     L, Ls = (p.L_omega_1, p.L_omega_2, p.L_phi, p.L_T_l), (p.Ls_omega_1, p.Ls_omega_2, p.Ls_phi, p.Ls_T_l)
-    e = corrected(e, -e.omega_1, [a + slip * (b - a) for a, b in zip(L, Ls, strict=True)])
+    gains = branch(slip > 0.0, lambda: tuple(a + slip * (b - a) for a, b in zip(L, Ls, strict=True)), lambda: L)
+    e = corrected(e, -e.omega_1, gains)
     x = x._replace(base=omega_1, estimate=e, drift=drift, slip=slip)
     plausible = p.C * (abs(e.phi) - x.gap.phi_B) <= LARGEST_TORQUE * p.T_max
     return branch(plausible, lambda: x, lambda: restart(x, omega_1, 0.0, p))

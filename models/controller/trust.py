@@ -49,9 +49,10 @@ def direction(
         omega_1: motor speed, rad/s.
         good: whether that is good.
     """
-    turning = logical_and(good, abs(omega_1) > p.omega_still)
-    turning = logical_and(turning, logical_or(is_trusted(x), abs(x.direction) < 1.0))
     step, towards, demanded = T_s / p.t_apart, sign_of(omega_1), sign_of(u.T_driver)
+    unsure = x.direction * towards < 1.0
+    turning = logical_and(logical_and(unsure, good), abs(omega_1) > p.omega_still)
+    turning = logical_and(turning, logical_or(is_trusted(x), abs(x.direction) < 1.0))
     along = x.direction * towards + step
     seen = where(turning, towards * minimum(where(along >= 0.0, maximum(along, step), along), 1.0), x.direction)
     seen = where(sure, demanded, where(pushed, step * demanded, seen))
