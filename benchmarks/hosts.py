@@ -30,9 +30,9 @@ from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.steps import MakeSteps, interpreted
 from driveline.harness.cosimulation.system import Scheme, System
+from driveline.harness.loop.built_fmus import warn_of_stale
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
-from driveline.harness.loop.stale_fmus import warn_of_stale
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.simulation.simulate import signals

@@ -30,9 +30,9 @@ from driveline.harness.cosimulation.interface import type_of
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.steps import MakeSteps, Steps, interpreted
 from driveline.harness.cosimulation.system import System
+from driveline.harness.loop.built_fmus import warn_of_stale
 from driveline.harness.loop.places import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS
 from driveline.harness.loop.settings import chosen_build, loop
-from driveline.harness.loop.stale_fmus import warn_of_stale
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
 

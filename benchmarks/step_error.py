@@ -26,9 +26,9 @@ from driveline.harness.cosimulation.compiled_steps import CompiledSteps
 from driveline.harness.cosimulation.experiment import Experiment, Source
 from driveline.harness.cosimulation.loading import loaded
 from driveline.harness.cosimulation.system import Scheme, System
+from driveline.harness.loop.built_fmus import warn_of_stale
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import loop
-from driveline.harness.loop.stale_fmus import warn_of_stale
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from tests.back_to_back import STEP_SIZE, Given, drive, fed
 

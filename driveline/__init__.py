@@ -71,7 +71,7 @@ def _lazy() -> tuple:
 
 def __getattr__(name: str) -> object:
     if name == "__all__" and sys._getframe(1).f_globals.get("__name__") != "pydoc":  # its page has no room for all
-        return __dir__()
+        return [each for each in __dir__() if _is_installed(each)]
     with _IMPORTING:
         find, names, _ = _lazy()
         if name not in names():
@@ -82,6 +82,17 @@ def __getattr__(name: str) -> object:
         if name in _MODULES:
             import_module(f".{_MODULES[name]}.{name}", __name__)
         return find(name)
+
+
+def _is_installed(name: str) -> bool:
+    """Whether a public name needs no extra that is not here."""
+    from .harness.base.errors import MissingExtra
+
+    try:
+        __getattr__(name)
+    except MissingExtra:
+        return False
+    return True
 
 
 def __dir__() -> list[str]:

@@ -14,6 +14,11 @@ PART = r"""(?:[\w-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')[ \t]*\.[ \t]*"""
 TOO_DEEP = re.compile(rf"(?<![\w-])(?:{PART}){{{DEEPEST_TOML}}}", re.ASCII)
 TOO_LONG = re.compile(rf"\b[0-9](?:[xob]?[0-9A-Fa-f_]){{{MOST_DIGITS}}}", re.ASCII)
 
+UNQUOTED = re.compile(
+    r"^[ \t]*([\w-]+)[ \t]*=[ \t]*([+-]?\d[\d.eE+-]*[ \t]*[A-Za-z°%µ:][\w°%/.^*· -]{0,20})(?=\s*?(?:#|$))", re.MULTILINE
+)
+"""A number with a unit, as no TOML has it."""
+
 TEXT = r'''"""(?:[^\\]|\\.)*?"""|\'\'\'.*?\'\'\'|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|#[^\n]*'''
 BRACKET = re.compile(rf"{TEXT}|(?P<opens>[\[{{])|(?P<closes>[\]}}])", re.DOTALL)
 """A bracket, or a text or comment, in which brackets are none."""
@@ -43,7 +48,12 @@ def toml_entries(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except ValueError as error:
-        raise ValueError(f"not TOML: {error}") from error
+        found = UNQUOTED.search(text)
+        line = text.count("\n", 0, found.start(1)) + 1 if found else 0
+        quotes = (
+            f'; line {line}: a number with a unit stands in quotes, {found[1]} = "{found[2].strip()}"' if found else ""
+        )
+        raise ValueError(f"not TOML: {error}{quotes}") from error
 
 
 def _require_shallow(text: str) -> None:

@@ -28,7 +28,7 @@ SPELLED = {
     ),
     "rev": "turn",
     **dict.fromkeys(("sec", "secs", "seconds", "Sec"), "s"),
-    **dict.fromkeys(("-", "--", "bool", "Boolean"), "1"),
+    **dict.fromkeys(("-", "--", ":1", "bool", "Boolean"), "1"),
     "mps": "m/s",
     "grad": "deg",  # the German word, which pint takes for 1/400 of a turn
     "Grad": "deg",

@@ -25,8 +25,8 @@ from ...models import motor_torque_loop, two_mass_driveline, validation_vehicle
 from ...models.block.declaration import Real, variables
 from ...models.block.types import ContinuousBlock
 from ..description.variables import Variable, interface
-from ..errors import ParameterFileError
-from .estimates import LAWS, estimated
+from ..errors import NoSuchCar, ParameterFileError
+from .estimates import LAWS, SHEET, estimated, law
 
 if TYPE_CHECKING:
     from .oscillation import Mode
@@ -69,7 +69,7 @@ class Measured(NamedTuple):
 
     frequency: Annotated[float, Real("Hz", "at which the drive train swings, in the place of C", 0.3, 30.0)]
     damping_ratio: Annotated[float, Real("1", "of that swing, in the place of d_s, d_g, d_p", 0.005, 0.5)]
-    gap: Annotated[float, Real("rad", "at the wheel from flank to flank, in the place of phi_B", 0.0, 1.0)]
+    gap: Annotated[float, Real("rad", "at the wheel from flank to flank, in the place of phi_B", 0.0, 0.2)]
 
 
 MEASURED = {each.name: Variable(-1, each.name, "parameter", each.declaration, None) for each in variables(Measured)}
@@ -97,6 +97,10 @@ INSTEAD = {"frequency": ("C", *SHAFTS), "damping_ratio": tuple(DAMPERS), "gap": 
 """What follows from what is measured, and is not given beside it."""
 
 
+DECIDING = (*INSTEAD, "C", *SHAFTS, "J_1", "J_2", "c_slip", *SHEET, "F_z0", *WHEELS, "J_p")
+"""Entries that a message names where there is no such car: what decides how it swings."""
+
+
 def told_by_others(entries: Collection[str]) -> set[str]:
     """Names of entries that others tell, so that nobody need give or estimate them."""
     told = {name for by, names in INSTEAD.items() if by in entries for name in names}
@@ -112,16 +116,19 @@ def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, 
             among them.
 
     Raises:
-        ParameterFileError: entries disagree, are no numbers or out of bounds, or there is no such car.
+        ParameterFileError: entries are no numbers.
+        NoSuchCar: they disagree, are out of bounds, or no car has them.
     """
     given = {name: _number(name, value) for name, value in entries.items() if name in OF_CAR}
-    followed = _common(frozenset(given.items()))
-    if set(taken) >= set(FOLLOW):
-        try:
+    try:
+        followed = _common(frozenset(given.items()))
+        if set(taken) >= set(FOLLOW):
             followed = followed | _detailed(frozenset({**given, **followed}.items()))
-        except ParameterFileError as problem:
-            guessed = [name for name in followed if name in LAWS and name not in told_by_others(given)]
-            raise ParameterFileError(f"{problem}{'; not given: ' if guessed else ''}{', '.join(guessed)}") from problem
+    except _DoesNotFollow as problem:
+        deciding = [name for name in DECIDING if name in given] or [*given]
+        guessed = [name for name in LAWS if name not in {*given, *told_by_others(given)} and law(name, given)]
+        also = f"; estimated: {', '.join(guessed)}" if guessed else ""
+        raise NoSuchCar(f"{_told(given, *deciding)}: {problem}{also}", *deciding) from problem
     return {**{name: value for name, value in entries.items() if name not in MEASURED}, **followed}
 
 
@@ -145,6 +152,10 @@ def updated(entries: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, A
     return {**{name: value for name, value in entries.items() if name not in replaced}, **known}
 
 
+class _DoesNotFollow(Exception):
+    """Something cannot follow from the entries of a car; the text says what."""
+
+
 @cache
 def _common(given: frozenset[tuple[str, float]]) -> dict[str, float]:
     """What follows for both plants and the design: what no entry tells, as it is estimated; C, if the file has the
@@ -154,34 +165,34 @@ def _common(given: frozenset[tuple[str, float]]) -> dict[str, float]:
         _require_possible(name, value)
     for name, of in INSTEAD.items():
         if name in car and (both := [each for each in of if each in car]):
-            raise ParameterFileError(f"{_told(car, name, *both)}: leave one out, as {both[0]} follows from {name}")
+            raise NoSuchCar(f"{_told(car, name, *both)}: leave one out, as {both[0]} follows from {name}", name)
     elastic, told = any(name in car for name in SHAFTS), told_by_others(car)
     found = {name: value for name, value in estimated(car).items() if name not in told}
     bounds = {name: DECLARED[name][1].bounds() for name in found}
     found = {name: min(max(value, bounds[name][0]), bounds[name][1]) for name, value in found.items()}
     if "gap" in car:
         found["phi_B"] = 0.5 * car["gap"] * car.get("i", DEFAULT_CAR["i"])
-        _require_possible("phi_B", found["phi_B"], f" with {_told(car, 'gap', 'i')}")
     found = _others_than_usual(found)
     car |= found
     _require_agreeing(car)
 
     def frequency_with(C: float) -> float:
-        return _frequency(DESIGN, car | {"C": C})
+        return _frequency(DESIGN, car | {"C": C}) * frequencies_apart()
 
     if "frequency" in car:
-        wanted, what = car["frequency"] / frequencies_apart(), f"{_told(car, 'frequency', 'J_1', 'c_slip')}: C"
+        wanted = car["frequency"]
     elif not elastic or ("C" in car and "k_s" not in car):
         return found
     else:
-        wanted, what = _frequency(DETAILED, with_details(car, 1.0)) / frequencies_apart(), "C"
-    C = _solved(frequency_with, wanted, *DECLARED["C"][1].bounds(), what)
+        wanted = _frequency(DETAILED, with_details(car, 1.0))
+    C = _solved(DESIGN, frequency_with, wanted, *DECLARED["C"][1].bounds())
     if "C" not in car:
         return found | _others_than_usual({"C": C})
-    if not _close(_frequency(DESIGN, car), wanted):
-        raise ParameterFileError(
+    if not _close(frequency_with(car["C"]), wanted):
+        raise NoSuchCar(
             f"C = {car['C']:g} N.m/rad and {_told(car, *SHAFTS)} disagree: with that C would be {C:.4g} N.m/rad; "
-            "leave one of them out, and it follows"
+            "leave one of them out, and it follows",
+            "C",
         )
     return found
 
@@ -195,27 +206,24 @@ def _detailed(given: frozenset[tuple[str, float]]) -> dict[str, float]:
         if not car or "k_s" in car or ("C" not in car and any(name in car for name in SHAFTS)):
             return 1.0
         wanted = _frequency(DESIGN, car) * frequencies_apart()
-        what = f"{_told(car | {'C': car.get('C', DEFAULT_CAR['C'])}, 'C', 'c_slip', 'k_g', 'k_p')}: k_s"
-        return _solved(
-            lambda factor: _frequency(DETAILED, with_details(car, factor, damping)),
-            wanted,
-            1.0 / FURTHEST,
-            FURTHEST,
-            what,
-        )
+
+        def frequency_with(factor: float) -> float:
+            return _frequency(DETAILED, with_details(car, factor, damping))
+
+        return _solved(DETAILED, frequency_with, wanted, 1.0 / FURTHEST, FURTHEST)
 
     def damping_ratio(damping: float) -> float:
         return _oscillation(DETAILED, with_details(car, factor, damping)).damping_ratio
 
     factor, damping = stiffness(1.0), 1.0
     if "damping_ratio" in car:
-        what = f"{_told(car, 'damping_ratio')}: d_s"
-        damping = _solved(damping_ratio, car["damping_ratio"], LEAST_DAMPING, FURTHEST, what, "damping ratio", unit="")
+        damping = _solved(DETAILED, damping_ratio, car["damping_ratio"], LEAST_DAMPING, FURTHEST, "damping ratio", "")
         factor = stiffness(damping)
     followed = {name: with_details(car, factor, damping)[name] for name in FOLLOW if name not in car}
     followed = _others_than_usual(followed)
     for name, value in followed.items():
-        _require_possible(name, value, " as it follows from the other entries; give it")
+        if impossible := _impossible(name, value):
+            raise _DoesNotFollow(f"{_told({name: value}, name)} would follow, and {impossible}")
     return followed
 
 
@@ -248,16 +256,21 @@ def _require_agreeing(car: Mapping[str, float]) -> None:
     full = {**DEFAULT_CAR, **with_details(car, 1.0)}
     wheels, of_J_2 = full["J_w"] + full["J_g"], full["J_2"] * full["i"] ** 2
     if wheels > (1.0 + APART) * of_J_2:
-        raise ParameterFileError(
+        raise NoSuchCar(
             f"J_w + J_g = {wheels:.4g} kg.m2 and J_2 = {full['J_2']:g} kg.m2 disagree: with i = {full['i']:g} J_2 is "
-            f"{of_J_2:.4g} kg.m2 at the wheels, and has them in it"
+            f"{of_J_2:.4g} kg.m2 at the wheels, and has them in it",
+            *WHEELS,
+            "J_2",
         )
-    for less, more, told in (
-        (full["F_z0"], full["m"] * full["g"], f"F_z0 = {full['F_z0']:g} N and m = {full['m']:g} kg"),
-        (full["m_h"] * full["g"], full["F_z0"], f"m_h = {full['m_h']:g} kg and F_z0 = {full['F_z0']:g} N"),
+    for less, more, names in (
+        (full["F_z0"], full["m"] * full["g"], ("F_z0", "m")),
+        (full["m_h"] * full["g"], full["F_z0"], ("m_h", "F_z0")),
     ):
         if less > (1.0 + APART) * more:
-            raise ParameterFileError(f"{told} disagree: {less:.4g} N are more than the {more:.4g} N that they are of")
+            told = " and ".join(_told(full, name) for name in names)
+            raise NoSuchCar(
+                f"{told} disagree: {less:.4g} N are more than the {more:.4g} N that they are of", *names, "g"
+            )
 
 
 def _frequency(plant: ContinuousBlock, car: Mapping[str, float]) -> float:
@@ -279,18 +292,18 @@ def frequencies_apart() -> float:
 
 
 def _solved(
+    plant: ContinuousBlock,
     frequency: Callable[[float], float],
     wanted: float,
     low: float,
     high: float,
-    what: str,
-    of: str = "frequency",
+    what: str = "frequency",
     unit: str = " Hz",
 ) -> float:
-    """The value at which a frequency, or another quantity with a unit that grows with it, is the one that is wanted.
+    """The value at which a frequency of a plant, or another quantity that grows with it, is the one that is wanted.
 
     Raises:
-        ParameterFileError: there is none between low and high; begins with what is looked for.
+        _DoesNotFollow: there is none between low and high.
     """
 
     def missed(x: float) -> float:
@@ -300,15 +313,16 @@ def _solved(
     if found is not None:
         return exp(found)
     least, most = frequency(low), frequency(high)
-    if not least <= wanted <= most:
-        raise ParameterFileError(
-            f"{what} does not follow: the {of} of the drive train would have to be {wanted:.3g}{unit}, and can be "
-            f"{least:.3g} to {most:.3g}{unit}"
-        )
-    from scipy.optimize import brentq  # pyright: ignore[reportUnknownVariableType]
+    if least <= wanted <= most:
+        from scipy.optimize import brentq  # pyright: ignore[reportUnknownVariableType]
 
-    found = brentq(missed, log(low), log(high), xtol=1e-9)  # pyright: ignore[reportUnknownVariableType]
-    return exp(found)  # pyright: ignore[reportArgumentType, reportUnknownArgumentType]
+        x = float(brentq(missed, log(low), log(high), xtol=1e-9))  # pyright: ignore[reportArgumentType]
+        if _close(frequency(exp(x)), wanted):  # and no leap to another mode
+            return exp(x)
+    raise _DoesNotFollow(
+        f"the {what} of the drive train would have to be {wanted:.3g}{unit}, and that of {plant.name} can be "
+        f"{least:.3g} to {most:.3g}{unit}"
+    )
 
 
 def _by_secants(missed: Callable[[float], float], low: float, high: float) -> float | None:
@@ -357,8 +371,13 @@ def _number(name: str, value: Any) -> float:
         raise ParameterFileError(f"{name} = {value!r:.40}: it must be a number") from None
 
 
-def _require_possible(name: str, value: float, why: str = "") -> None:
+def _require_possible(name: str, value: float) -> None:
+    if impossible := _impossible(name, value):
+        raise NoSuchCar(f"{name} = {value:g}: {impossible}", name)
+
+
+def _impossible(name: str, value: float) -> str:
+    """Who does not take the value, and what it takes."""
     block, variable = OF_CAR[name]
     low, high = variable.bounds()
-    if not low <= value <= high:
-        raise ParameterFileError(f"{name} = {value:g}{why}: {block} takes {variable.allowed()}")
+    return "" if low <= value <= high else f"{block} takes {variable.allowed()}"

@@ -14,7 +14,7 @@ from typing import Any
 from ...models.block.declaration import Integer, Real
 from ..catalogue import EVERY, FMUS
 from ..description.variables import LARGEST, Variable, interface
-from ..errors import ParameterFileError
+from ..errors import NoSuchCar, ParameterFileError
 from ..fmu import Fmu
 from ..names import RENAMED, meant
 from ..toml_file import toml_entries
@@ -73,9 +73,15 @@ def read_vehicle(path: Path, own: Iterable[Fmu] = (), others: Collection[str] = 
     values = _read(path, known, others, set_elsewhere)
     try:
         of_one_car(values, ())
-    except ParameterFileError as problem:
-        raise ParameterFileError(f"{path}: {problem}") from problem
+    except NoSuchCar as problem:
+        raise in_file(problem, path) from problem
     return values
+
+
+def in_file(problem: NoSuchCar, path: Path) -> ParameterFileError:
+    """The refusal of a car with the vehicle file that its entries stand in, and the first of their lines."""
+    line = next((line for name in problem.entries if (line := _line(path, name))), None)
+    return ParameterFileError(f"{path}{f', line {line}' if line else ''}: {problem}")
 
 
 def of_vehicle(entries: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -183,7 +189,7 @@ def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Map
         entries = toml_entries(Path(path))
     except ValueError as reason:
         raise ParameterFileError(f"{path}: {reason}") from reason
-    return _values(entries, known, others, set_elsewhere, lambda name: f"{path}, line {_line(path, name)}: ")
+    return _values(entries, known, others, set_elsewhere, lambda name: f"{path}, line {_line(path, name) or 1}: ")
 
 
 def _values(
@@ -227,7 +233,7 @@ def _checked(name: str, entry: Any, known: Owners, others: Collection[str], set_
 
 def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> Any:
     """The value of an entry in SI units, which all that have the parameter must allow."""
-    kind = next((variable.fmi_type for _, variable in owners), "Real")
+    kind, given = next((variable.fmi_type for _, variable in owners), "Real"), entry
     if isinstance(entry, str) and kind == "Real":
         entry = _quantity(name, entry, next((variable.unit or "1" for _, variable in owners), ""))
     python_type, meant = KINDS[kind]
@@ -240,7 +246,8 @@ def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> A
     for fmu, variable in owners:
         low, high = variable.bounds()
         if not low <= entry <= high:
-            raise ParameterFileError(f"{name} = {entry:g}: {fmu} takes {variable.allowed()}")
+            degrees = f'; "{given} deg" is in degrees' if variable.unit == "rad" and given == entry else ""
+            raise ParameterFileError(f"{name} = {entry:g}: {fmu} takes {variable.allowed()}{degrees}")
     return float(entry) if kind == "Real" else entry
 
 
@@ -288,8 +295,8 @@ def _described(words: Sequence[str], known: Owners) -> dict[str, int]:
     return {each: at for each, at in places.items() if each in SHEET} or places
 
 
-def _line(path: Path, name: str) -> int:
+def _line(path: Path, name: str) -> int | None:
     """Number of the line of a file where the entry or table of that name begins."""
     begins = re.compile(rf"""\s*\[*\s*["']?{re.escape(name)}["']?\s*[=.\]]""")
     lines = path.read_text(encoding="utf-8-sig").splitlines()
-    return next((k for k, line in enumerate(lines, 1) if begins.match(line)), 1)
+    return next((k for k, line in enumerate(lines, 1) if begins.match(line)), None)

@@ -1,7 +1,8 @@
 """Operations as a graph, and which of them can be left out at run time.
 
 What only one side of a choice needs is found, so that it can be put into a branch. A choice between equal values is
-that value, and one among the elements of an array, by the whole part of a number, is a look-up.
+that value, and so is a limitation to limits between which it is already. One among the elements of an array, by the
+whole part of a number, is a look-up.
 """
 
 import operator
@@ -236,7 +237,19 @@ class TracedGraph(Graph):
             number = self.number(Node("CHOICE", (condition, value, otherwise)))
         if ladder:
             self._ladders[number] = ladder
-        return number
+        outer = self._limited(number)
+        inner = outer and self._limited(outer[0])
+        return outer[0] if outer and inner and inner[1:] == outer[1:] else number
+
+    def _limited(self, k: int) -> tuple[int, int, int] | None:
+        """x, lower and upper of a node that is clip(x, lower, upper)."""
+        if self.nodes[k].operation != "CHOICE":
+            return None
+        below, above, upper = self.nodes[k].operands
+        if self.nodes[above].operation != "CHOICE" or self.nodes[below] != Node("LT", (above, upper)):
+            return None
+        over, x, lower = self.nodes[above].operands
+        return (x, lower, upper) if self.nodes[over] == Node("LT", (lower, x)) else None
 
     def _ladder(self, condition: int, value: int, otherwise: int) -> Ladder | None:
         """That of a choice, if it is one."""

@@ -32,8 +32,12 @@ CODE = (
     *("-ffp-contract=off", "-fno-math-errno"),
     # small, and no choice is written as two conditional moves, which is longer than a branch
     *("-Os", "-fno-if-conversion", "-fno-if-conversion2"),
-    # fewer jumps: blocks are laid out as at -O2, and ends that are alike stay where they are
-    *("-freorder-blocks-algorithm=stc", "-fno-tree-tail-merge"),
+    # fewer jumps: blocks are laid out as at -O2, in the order of the C, and ends that are alike stay where they are
+    *("-freorder-blocks-algorithm=stc", "-fno-guess-branch-probability", "-fno-tree-tail-merge"),
+    # fewer numbers that wait on the stack: what is cheap is computed where it is needed
+    *("-fno-tree-coalesce-vars", "-fno-tree-fre", "-fno-ssa-phiopt"),
+    # the sign of a zero decides nothing here
+    "-fno-signed-zeros",
 )
 
 FLAGS = (*WARNINGS, *CODE)

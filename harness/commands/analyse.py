@@ -41,8 +41,8 @@ def run(args: Arguments) -> int:
     from ..studies.margins.analysis_report import announce, write
     from ..studies.margins.loop_analysis import analyse
 
-    loops = [Settings(plant, args.controller, folder=args.fmus) for plant in dict.fromkeys(args.plant or PLANTS)]
-    given = {each.plant_name: built_with(each, args.vehicle, args.parameters, {}) for each in loops}
+    loops = (Settings(plant, args.controller, folder=args.fmus) for plant in dict.fromkeys(args.plant or PLANTS))
+    given = {each.plant_name: each for each in built_with(loops, args.vehicle, args.parameters, {})}
     warn_of_gains(args.vehicle, args.parameters, given.values())
     same = {plant: distinguishing(each) for plant, each in given.items()}
     with job(args, args.output / "analysis.json", same, given, [args.output / "margins.csv"]) as made:

@@ -43,8 +43,14 @@ def run(args: Arguments) -> int:
     files = args.vehicle, args.parameters
     built = build_fmus(args.names, args.output, args.build, args.platform, *files, int(args.fmi))
     folders = (args.output / folder for folder in ("", NATIVE_FOLDER, FMI3_FOLDER))
-    with unchanged_if_stopped("*.fmu", *folders), closing(built):
-        for path in built:
-            if not args.quiet:
-                print(f"{path}  {path.stat().st_size / 1024:.0f} kB")
+    made: list[Path] = []
+    try:
+        with unchanged_if_stopped("*.fmu", *folders), closing(built):
+            made.extend(built)
+    except KeyboardInterrupt:
+        made.clear()
+        raise
+    finally:  # of one that cannot be built the others stay
+        for path in made:
+            args.say(f"{path}  {path.stat().st_size / 1024:.0f} kB")
     return 0

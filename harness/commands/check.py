@@ -77,7 +77,8 @@ def _printed(path: Path, answers: "Iterable[Verdict]", text: bool, quiet: bool) 
     for verdict in answers:
         verdicts.append(verdict)
         if text and quiet:
-            print("".join(f"{path}: {verdict.severity}: {problem}\n" for problem in verdict.problems), end="")
+            start = f"{path}: {verdict.severity} [{verdict.rule}]"
+            print("".join(f"{start}: {problem}\n" for problem in verdict.problems), end="")
         elif text:
             print_verdict(verdict.title, verdict.problems, verdict.severity, verdict.rule, verdict.tried)
     return verdicts

@@ -284,11 +284,16 @@ def run(args: argparse.Namespace) -> int:
 
         print_manoeuvres(getattr(args, "json", False))
         return 0
-    from ...fmus.errors import BuildError
+    from ...fmus.errors import BuildError, NoSuchCar
     from .arguments import filled
 
     try:
         return args.found.run(filled(args.found.record, args))
+    except NoSuchCar as refusal:  # which a block says that not every command needs, so not when the file was read
+        from ...fmus.building.parameter_files import in_file
+
+        path = getattr(args, "vehicle", None)
+        raise DrivelineError(str(in_file(refusal, path) if path else refusal)) from refusal
     except BuildError as refusal:
         raise DrivelineError(str(refusal)) from refusal
 

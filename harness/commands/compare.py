@@ -27,7 +27,7 @@ from .jobs import RunJob, distinguishing, job
 from .manoeuvres import Chosen, Listing, chosen, manoeuvre
 from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plants, record
 from .printing import JsonPrinting
-from .settings import all_settings, caption, dampings
+from .settings import all_settings, caption, dampings, say_unknowns
 
 if TYPE_CHECKING:
     from ..studies.compare.compare import Outcome
@@ -48,7 +48,6 @@ class Arguments(Listing, Loop, Replacing, SignalsFormat, Figures, Report, JsonPr
 def run(args: Arguments) -> int:
     given = all_settings(args, args.plant, args.controller or PLACES["controller"][:1])
     # here and not above: mistakes and help are answered without them
-    from ..design.unknowns import unknowns_line
     from ..manoeuvres.drivable import require_possible
     from ..studies.compare.compare import RUNS, cases, loops_of, rows_of, run_cases, write_tables
     from ..studies.compare.compare_report import report
@@ -83,8 +82,7 @@ def run(args: Arguments) -> int:
         builds = {made.plant_name: made.build for made in given.values()}
         built = ", ".join(f"{plant} {build}" for plant, build in builds.items())
         args.say(f"FMUs: {built}; signals of {len(outcomes)} runs: {folder}")
-        if lacks := unknowns_line(args.vehicle):
-            args.say(lacks)
+        say_unknowns(args)
         made.tell(print_runs, rows, title, runs=[each.record for each in outcomes])
     return 0
 

@@ -26,7 +26,7 @@ from .arguments import option, record
 from .jobs import Job, campaign_job, distinguishing, job
 from .options import Campaign, case, cases, controller, output, seed
 from .printing import JsonPrinting
-from .settings import caption, plants_settings
+from .settings import caption, plants_settings, say_unknowns
 
 if TYPE_CHECKING:
     from ..cosimulation.system import System
@@ -82,6 +82,7 @@ def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: 
         outcomes = campaign(runner, range(1, args.cases + 1), args.seed, archive, executor=executor, plan=plan)
         archive.sort(lambda case: case.number)
         made.wrote(*write(outcomes, args.output))
+        say_unknowns(args)
         return _tell(made, outcomes, runner)
 
 

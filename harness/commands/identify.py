@@ -24,18 +24,16 @@ examples:
 """
 
 import json
-import os
 from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import DrivelineError
 from ..base.optional_packages import required
 from .arguments import option
 from .identify_step import run_step
 from .jobs import job
-from .options import Figures, Replacing, Report, file_of, record
+from .options import Figures, Replacing, Report, file_of, record, written
 from .printing import Printing
 from .recorded import Recorded, examples, recording
 
@@ -58,7 +56,10 @@ class Arguments(Recorded, Figures, Replacing, Report, Printing):
     vehicle: Path | None = file_of("what is known of the car (default: that of all blocks)")
     free: tuple[str, ...] = option((), "identify this too", choices=FREE)
     output: Path | None = option(
-        None, "the vehicle file (default: results/identify/RECORDING_car.toml)", Path, metavar="FILE.toml"
+        None,
+        "the vehicle file (default: results/identify/RECORDING_car.toml)",
+        written(".toml", "a vehicle file"),
+        metavar="FILE.toml",
     )
     step: bool = option(False, "identify C and phi_B from one step of the torque")
     design: bool = option(False, "compute gains for this car, build the controller, compare on both plants")
@@ -77,7 +78,6 @@ def run(args: Arguments) -> int:
 
     vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
     output = args.output or args.usual_output
-    require_possible(output)
     plant, _, _ = records(vehicle)
     recording = read_measurement(args.recording, plant.i, plant.r, **args.as_read)
     if args.step:
@@ -109,18 +109,6 @@ def run(args: Arguments) -> int:
 def all_found(output: Path) -> Path:
     """The file beside the vehicle file."""
     return output.with_name(f"{output.stem}_identified.json")
-
-
-def require_possible(output: Path) -> None:
-    """
-    Raises:
-        DrivelineError: the vehicle file cannot be written.
-    """
-    if output.suffix != ".toml":
-        raise DrivelineError(f"--output {output}: a vehicle file is a .toml")
-    there = next(folder for folder in output.absolute().parents if folder.exists())
-    if not (there.is_dir() and os.access(there, os.W_OK)):
-        raise DrivelineError(f"--output {output}: {there} is no folder that can be written to")
 
 
 def write(identified: "Identified", recording: Path, vehicle: Mapping[str, Any], output: Path) -> tuple[Path, Path]:

@@ -57,12 +57,11 @@ def _lines(found: "Step") -> list[str]:
     """What was found, for people."""
     from ..identification.priors import PRIORS
 
-    told = [
-        f"{name} = {value:.4g} {PRIORS[name].unit}, 95 %: {value * exp(-found.halves[name]):.3g} to "
-        f"{value * exp(found.halves[name]):.3g}"
-        + ("" if found.halves[name] <= WIDEST else "; too wide for a vehicle file")
-        for name, value in found.values.items()
-    ]
+    told: list[str] = []
+    for name, value in found.values.items():
+        half, unit = found.halves[name], PRIORS[name].unit
+        answer = f" = {value:.4g} {unit}, 95 %:" if half <= WIDEST else f": not told, in {unit} it is anything from"
+        told.append(f"{name}{answer} {value * exp(-half):.3g} to {value * exp(half):.3g}")
     if "phi_B" not in found.values:
         told.append("phi_B: not told, as the torque does not change its sign")
     return [

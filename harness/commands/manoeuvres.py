@@ -41,12 +41,18 @@ class Chosen(NamedTuple):
 
     def for_car(self, settings: Settings) -> "Chosen":
         """These for the car of a loop; what is written in files stays as it is."""
-        from ..manoeuvres.for_car import for_car, largest_torque  # not for help
+        from ..manoeuvres.for_car import largest_torque  # not for help
 
-        T_max, each = largest_torque(settings), self.manoeuvres.items()
+        return self.with_torque(largest_torque(settings))
+
+    def with_torque(self, T_max: float) -> "Chosen":
+        """The same for a motor with this largest torque in N.m."""
+        from ..manoeuvres.for_car import for_car
+
+        each = self.manoeuvres.items()
         return self._replace(manoeuvres={name: m if name in self.files else for_car(m, T_max) for name, m in each})
 
-    def beside(self, others: Mapping[str, Manoeuvre]) -> dict[str, Manoeuvre]:
+    def beside(self, others: Mapping[str, Manoeuvre]) -> "Chosen":
         """These, then those of others that are not among them.
 
         Raises:
@@ -54,7 +60,7 @@ class Chosen(NamedTuple):
         """
         if same := next((name for name in self.files if name in others), None):
             raise DrivelineError(f"two manoeuvres are called {same}; rename the file of one")
-        return {**self.manoeuvres, **others}
+        return self._replace(manoeuvres={**self.manoeuvres, **others})
 
 
 def chosen(texts: Iterable[str]) -> Chosen:

@@ -1,6 +1,6 @@
 """Drafts which variables of somebody else's FMU are those that the loop exchanges with a place: by names, causality and
-unit. What is not sure is marked, what is missing is named; where nothing fits that a run needs, the exit code is 2. The
-file is what --map of the other commands takes.
+unit. What is not sure stands behind a # and does not count until you take that away, what is missing is named; where
+nothing fits that a run needs, the exit code is 2. The file is what --map of the other commands takes.
 
 examples:
   driveline map their_car.fmu --place plant --output theirs.toml
@@ -38,6 +38,8 @@ def run(args: Arguments) -> int:
     if args.output is not None:
         write_toml(text, args.output, args.replace)
         args.say(f"written: {args.output}")
+        if guessed := [each.port.variable for each in proposals if each.theirs and not each.sure]:
+            args.say(f"not sure, and behind a # until you have read them: {', '.join(guessed)}")
     elif not args.silent:
         print(text, end="")
     args.document(

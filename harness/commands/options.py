@@ -12,6 +12,7 @@ from typing import Any
 from ...fmus.written_numbers import real, whole
 from ..base.errors import DrivelineError
 from ..base.known_names import nearest
+from ..base.parameter_words import FORMS, said
 from ..base.plain_text import plain, quoted
 from ..cosimulation.limits import USUAL_LIMITS, Limits
 from ..loop.places import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
@@ -20,9 +21,6 @@ from ..views.signals_file import FORMATS
 from .arguments import EXPERTS, option, record
 
 expert = partial(option, group=EXPERTS)
-
-OTHERS = {"controller": "damping control", "motor": "motor with its torque loop", "can": "wheel speeds over the bus"}
-"""The blocks of the loop beside the plant, and what they are."""
 
 LEAST_WINDOW = 0.01
 """In s, of the figures: a few samples."""
@@ -52,12 +50,22 @@ def file(text: str) -> Path:
 def output_folder(text: str) -> Path:
     """The path of a folder that can be written to, or made; tried here, before anything takes long."""
     path = folder(text)
-    there = path.absolute()
+    _require_writable(text, path.absolute())
+    return path
+
+
+def output_file(text: str) -> Path:
+    """The path of a file in such a folder."""
+    path = file(text)
+    _require_writable(text, path.absolute().parent)
+    return path
+
+
+def _require_writable(text: str, there: Path) -> None:
     try:
         while not there.exists():
             there = there.parent
-        with TemporaryFile(dir=there):
-            return path
+        TemporaryFile(dir=there).close()
     except OSError as error:
         raise ArgumentTypeError(f"{text} cannot be written to: {there}: {error.strerror}") from error
 
@@ -126,10 +134,10 @@ def assignment(text: str) -> tuple[str, float]:
     instance, dot, parameter = name.partition(".")
     found = {"true": 1.0, "false": 0.0}.get(value.lower(), real(value))
     if not (instance and dot and parameter and equals) or found is None:
-        form = "INSTANCE.PARAMETER@TIME=VALUE, as controller.k_d@2.0=1.5" if "@" in name else "plant.J_1=0.06"
-        raise ArgumentTypeError(f"{quoted(text)} is not of the form {form}")
+        form = FORMS["changed" if "@" in name else "constant"]
+        raise ArgumentTypeError(said("form", text=quoted(text), form=form))
     if not isfinite(found):
-        raise ArgumentTypeError(f"{quoted(text)}: a parameter is a finite number")
+        raise ArgumentTypeError(said("finite", text=quoted(text)))
     return name, found
 
 
@@ -139,7 +147,7 @@ class Assigned(_AppendAction):
     def __call__(self, parser, namespace, values, option_string=None) -> None:
         name, value = values  # type: ignore[misc]
         if (before := dict(getattr(namespace, self.dest)).get(name, value)) != value:
-            raise ArgumentError(self, f"{name} is given twice, {before!r} and {value!r}; it takes one value")
+            raise ArgumentError(self, said("twice", name=name, before=repr(before), value=repr(value)))
         super().__call__(parser, namespace, values, option_string)
 
 
@@ -308,7 +316,7 @@ class Loop(ParameterFiles, FmuFolder, ForeignLimits):
 def _output(text: str) -> Path:
     """A folder; the name of a file of signals is a slip."""
     path = Path(text)
-    if path.suffix in {form.ending for form in FORMATS.values()} and not path.exists():
+    if path.suffix in {".ssp", *(form.ending for form in FORMATS.values())} and not path.exists():
         raise ArgumentTypeError(f"{quoted(text)} is to be a folder, for all files that are written")
     return output_folder(text)
 
@@ -316,8 +324,19 @@ def _output(text: str) -> Path:
 def output(default: str, files: str) -> Any:
     """--output, the folder for everything that the command writes, or the file; `files` says what that is."""
     ending = Path(default).suffix
-    metavar = f"FILE{ending}" if ending else "FOLDER"
-    return option(Path(default), f"for {files} (default: %(default)s)", _output, metavar=metavar)
+    read, metavar = (written(ending, files), f"FILE{ending}") if ending else (_output, "FOLDER")
+    return option(Path(default), f"for {files} (default: %(default)s)", read, metavar=metavar)
+
+
+def written(ending: str, what: str) -> Callable[[str], Path]:
+    """What takes the name of a file with this ending that can be written to; `what` says what it is."""
+
+    def named(text: str) -> Path:
+        if Path(text).suffix != ending:
+            raise ArgumentTypeError(f"{quoted(text)}: {what} is a {ending}")
+        return output_file(text)
+
+    return named
 
 
 @record

@@ -19,7 +19,7 @@ from .arguments import option, record
 from .jobs import Job, campaign_job, distinguishing, job
 from .options import Campaign, case, cases, controllers, output, seed
 from .printing import JsonPrinting
-from .settings import all_settings, caption
+from .settings import all_settings, caption, say_unknowns
 
 if TYPE_CHECKING:
     from ..studies.robustness.case_runs import CaseRunner
@@ -61,6 +61,7 @@ def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Map
         outcomes = campaign(runner, range(1, args.cases + 1), archive, executor=executor)
         archive.sort(order(runner))
         made.wrote(*write(outcomes, runner, caption(args), args.output))
+        say_unknowns(args)
         _tell(made, outcomes, runner)
     return 0
 

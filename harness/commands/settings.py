@@ -8,22 +8,19 @@ from shlex import quote
 from typing import Any
 
 from ..base.known_names import by_name
+from ..base.parameter_words import said
 from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings, loop
 from ..views.metrics_table import DAMPINGS
-from .options import OTHERS, Loop
+from .options import Loop
 
 LOG = logging.getLogger(__name__)
 
 
-def settings(
-    args: Loop, plant: str, controller: str, silent: bool = False, one_of_several: bool = False, **run: Any
-) -> Settings:
+def settings(args: Loop, plant: str, controller: str, **run: Any) -> Settings:
     """What the options say for a plant and a controller; the FMUs are there then.
 
     Args:
-        silent: not to warn of gains.
-        one_of_several: see `harness.loop.given_parameters.built_with`.
         run: fields of the settings that no option of the loop gives.
 
     Raises:
@@ -34,7 +31,15 @@ def settings(
     """
     from ..loop.given_parameters import built_with  # mistakes and help are answered without
 
-    given = Settings(
+    given = [_given(args, plant, controller, args.map, **run)]
+    (made,) = built_with(given, args.vehicle, args.parameters, dict(args.set))
+    warn_of_gains(args.vehicle, args.parameters, [made])
+    return made
+
+
+def _given(args: Loop, plant: str, controller: str, mapping: Mapping[str, str], **run: Any) -> Settings:
+    """What the options give without the values of parameters."""
+    return Settings(
         plant,
         controller,
         args.motor,
@@ -42,19 +47,21 @@ def settings(
         seed=args.seed,
         folder=args.fmus,
         build=args.build,
-        mapping=args.map,
+        mapping=mapping,
         limits=args.limits,
         **run,
     )
-    made = built_with(given, args.vehicle, args.parameters, dict(args.set), one_of_several)
-    if not silent:
-        warn_of_gains(args.vehicle, args.parameters, [made])
-    return made
 
 
 def warn_of_gains(vehicle: Path | None, parameters: Path | None, loops: Iterable[Settings]) -> None:
-    """Says that a car is driven with the gains of another one, if a controller has such gains."""
-    if vehicle is not None and parameters is None and any(map(_has_gains, loops)):
+    """Says that a car has the gains of another one, if a controller has such gains, or is the default car."""
+    if vehicle is None:
+        return
+    from ...fmus.toml_file import toml_entries
+
+    if not toml_entries(vehicle):
+        LOG.warning(f"{vehicle} has no parameter: the car is the default one (`driveline car --template` has them all)")
+    elif parameters is None and any(map(_has_gains, loops)):
         LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
 
 
@@ -85,39 +92,49 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
     """
     from ..cosimulation.parameter_changes import parted
     from ..cosimulation.wiring import find, fit, require
-    from ..loop.given_parameters import NotTaken
+    from ..loop.built_fmus import built_together
+    from ..loop.given_parameters import NotTaken, require_of_plant, with_parameters
     from ..loop.mapped_names import mappings
 
     plants = list(by_name(plants or PLANTS, "plant").values())
     each = by_name(controllers or PLACES["controller"], "controller")
     mapped = mappings(args.map, plants, list(each.values()), args.limits)
-    several, found = len(each) > 1, dict[tuple[str, str], Settings]()
+    given = {(p, name): _given(args, p, each[name], mapped[p, each[name]]) for p in plants for name in each}
+    assigned, several, found = dict(args.set), len(each) > 1, dict[tuple[str, str], Settings]()
     for plant in plants:
-        refusals = []
-        for name, controller in each.items():
-            own = dataclasses.replace(args, map=mapped[plant, controller])
-            try:
-                made = settings(own, plant, controller, True, several)
-            except NotTaken as refusal:
-                refusals.append(refusal)
-                if len(refusals) == len(each):
-                    raise refusals[0] from None
-                made = settings(dataclasses.replace(own, parameters=None), plant, controller, True, several)
-            found[made.plant_name, name] = made
+        require_of_plant(assigned, plant)
+    refusals: dict[str, list[NotTaken]] = {plant: [] for plant in plants}
+    for (plant, name), made in zip(given, built_together(given.values(), alike=False), strict=True):
+        try:
+            made = with_parameters(made, args.vehicle, args.parameters, assigned, several)
+        except NotTaken as refusal:
+            refusals[plant].append(refusal)
+            if len(refusals[plant]) == len(each):
+                raise refusals[plant][0] from None
+            made = with_parameters(made, args.vehicle, None, assigned, several)
+        found[made.plant_name, name] = made
     warn_of_gains(args.vehicle, args.parameters, found.values())
-    for parameter in dict(args.set) if several else ():
+    for parameter in assigned if several else ():
         lacking = dict.fromkeys(name for (_, name), made in found.items() if parameter not in made.parameters)
         if len(lacking) == len(each):
             fits = (fit(loop(made)) for made in found.values())
             require(line for each in fits for line in find(parted(parameter)[0], "parameter", each.interfaces)[1])
         elif lacking:
-            LOG.warning("--set %s: %s has no such parameter and runs without it", parameter, ", ".join(lacking))
+            LOG.warning(said("without", name=f"--set {parameter}", controllers=", ".join(lacking)))
     return found
 
 
 def plants_settings(args: Any) -> dict[str, Settings]:
     """What the options say for each plant, with the one controller that they name; by the names of the plants."""
     return {plant: made for (plant, _), made in all_settings(args, args.plant, [args.controller]).items()}
+
+
+def say_unknowns(args: Any) -> None:
+    """Says what of the car of --vehicle is estimated or usual, and what that costs."""
+    from ..design.unknowns import unknowns_line
+
+    if not args.silent and (lacks := unknowns_line(args.vehicle)):
+        args.say(lacks)
 
 
 def caption(args: Any) -> str:
@@ -130,7 +147,11 @@ def caption(args: Any) -> str:
 def _set(given: Mapping[str, Any]) -> list[tuple[str, Any]]:
     """The options for blocks and parameters."""
     return [
-        *((place, block) for place in OTHERS for block in _other_than(PLACES[place][0], given.get(place))),
+        *(
+            (place, block)
+            for place in ("controller", "motor", "can")
+            for block in _other_than(PLACES[place][0], given.get(place))
+        ),
         *(("set", f"{name}={value!r}") for name, value in given.get("set", ())),
         *(("map", "=".join(names)) for names in given.get("map", {}).items()),
         *((name, given[name]) for name in ("vehicle", "parameters")),

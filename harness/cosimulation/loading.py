@@ -7,6 +7,7 @@ import logging
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -102,9 +103,9 @@ def loaded(
 
 
 def warn_of_absent(fitted: Fit) -> None:
-    """Says once what the loop runs without."""
-    for name in fitted.absent:
-        warn_once(f"{name}: {fitted.file(name)} does not have it; the loop runs without")
+    """Says once what the loop runs without, a line for each FMU."""
+    for file, names in groupby(fitted.absent, fitted.file):
+        warn_once(f"{file}: the loop runs without {', '.join(names)}")
 
 
 _here: Callable[[Fit, Path | None, MakeSteps], Any] = opened

@@ -41,7 +41,10 @@ def parsed(texts: Iterable[str]) -> dict[str, str]:
             raise WiringError(f"{text!r} is not of the form plant.T_gear=Shaft.tau{no_file}")
         for each, own in found.items():
             if mapping.setdefault(each, own) != own:
-                raise WiringError(f"{each} cannot be both {mapping[each]} and {own}")
+                raise WiringError(
+                    f"{each} cannot be both {mapping[each]} and {own}; of two FMUs each can have a table of its own, "
+                    "named as its file: [mine] for mine.fmu"
+                )
     return mapping
 
 

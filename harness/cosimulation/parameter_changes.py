@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...fmus.written_numbers import real
 from ..base.errors import WiringError
+from ..base.parameter_words import said
 from ..base.plain_text import quoted
 
 LATE = 1e-6
@@ -35,7 +36,7 @@ def parted(name: str) -> tuple[str, float | None]:
     parameter, _, time = (part.strip() for part in name.partition("@"))
     instant = real(time)
     if instant is None or isnan(instant):
-        raise WiringError(f"{name}: {quoted(time)} is no time in s, as 2.0 in controller.k_d@2.0")
+        raise WiringError(said("time", name=name, time=quoted(time)))
     return parameter, instant
 
 
@@ -57,11 +58,11 @@ def changes(parameters: Mapping[str, float], time: NDArray[np.float64]) -> list[
         if instant is None:
             continue
         if not 0.0 <= instant <= last + LATE * size:
-            raise WiringError(f"{name}: the steps of the run begin at 0 to {last:g} s")
+            raise WiringError(said("late", name=name, last=last))
         instance, _, own = parameter.partition(".")
         change = Change(ceil(instant / size - LATE), instance, own, value)
         if any(other[:3] == change[:3] for other in found):
-            raise WiringError(f"{name}: {parameter} is set twice at that step")
+            raise WiringError(said("same_step", name=name, parameter=parameter))
         found.append(change)
     return sorted(found, key=lambda change: change.step)
 

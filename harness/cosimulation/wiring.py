@@ -10,6 +10,7 @@ from fmpy.model_description import ModelVariable
 
 from ..base.errors import LONGEST_LINE, WiringError
 from ..base.known_names import nearest
+from ..base.parameter_words import said
 from ..base.plain_text import plain
 from . import mapping
 from .interface import Interface, type_of, unit_of
@@ -98,7 +99,8 @@ def _fixed(given: str, interfaces: Mapping[str, Interface]) -> Iterator[str]:
         interface = interfaces[name.partition(".")[0]]
         tunable = [v.name for v in interface.of_causality("parameter") if v.variability == "tunable"]
         known = f"tunable are {', '.join(tunable)}" if tunable else "none of its parameters is tunable"
-        yield f"{given}: in {interface.path.name} {variable.name} is fixed and cannot change in a run; {known}"
+        fixed = said("fixed", name=given, file=interface.path.name, parameter=variable.name)
+        yield f"{fixed}; {known}"
 
 
 def out_of_bounds(fitted: Fit, parameters: Mapping[str, float]) -> Iterator[str]:
@@ -120,7 +122,7 @@ def beyond_bounds(fitted: Fit, causality: str, name: str, value: float) -> str |
     high = inf if variable.max is None else factor * float(variable.max)
     if low <= value <= high:
         return None
-    return f"{interface.path.name} takes {low:g} to {high:g} {unit_of(variable) or ''}".rstrip()
+    return said("bounds", file=interface.path.name, low=low, high=high, unit=unit_of(variable) or "").rstrip()
 
 
 def _is_absent(name: str, interfaces: Mapping[str, Interface]) -> bool:
@@ -191,7 +193,7 @@ def find(name: str, causality: str, interfaces: Mapping[str, Interface]) -> tupl
     """The variable `instance.variable` of that causality; if there is none, what to say about it."""
     instance, _, variable_name = name.partition(".")
     if instance not in interfaces:
-        return None, [f"{name}: there is no instance {instance}; {nearest(instance, interfaces)}"]
+        return None, [f"{said('instance', name=name, instance=instance)}; {nearest(instance, interfaces)}"]
     interface = interfaces[instance]
     file = interface.path.name
     variable = interface.variables.get(variable_name)
@@ -200,7 +202,8 @@ def find(name: str, causality: str, interfaces: Mapping[str, Interface]) -> tupl
     if variable is None:
         known = [v.name for v in interface.of_causality(causality)]
         near = nearest(variable_name, known) if known else "it has none"
-        return None, [f"{name}: {file} has no {causality} {variable_name}; {near}"]
+        lacks = said("lacks", name=name, file=file, causality=causality, parameter=variable_name)
+        return None, [f"{lacks}; {near}"]
     if variable.causality != causality:
         return None, [f"{name}: in {file} {variable_name} is of causality {variable.causality}; it must be {causality}"]
     return variable, []

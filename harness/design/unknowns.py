@@ -83,12 +83,11 @@ def _worth(car: Mapping[str, Any], entry: Entry, assumed: Mapping[str, Any], set
 
 
 def unknowns_line(vehicle: Path | None) -> str:
-    """What a vehicle file does not have, and what it is worth, in one line; "" where there is none, or it has all.
-
-    Raises:
-        DesignError: there is no controller for this car.
-    """
-    found = unknowns(read_vehicle(vehicle)) if vehicle else []
+    """What a vehicle file does not have, and what it is worth, in one line; "" where there is none, or it has all."""
+    try:
+        found = unknowns(read_vehicle(vehicle)) if vehicle else []
+    except DesignError as reason:
+        return f"no gains can be designed for {vehicle}: {reason}"
     each = (
         f"{of.entry.name} = {of.entry.value:.3g} {printed(of.entry.unit)} ({of.entry.origin}) "
         f"{of.cells[0]} ms, {of.cells[1]} %"

@@ -50,6 +50,9 @@ LEAST = 0.5
 """Share of common words from which a variable is proposed; all must be common for it to be sure."""
 
 
+NOT_SURE = "NOT SURE: take the first # away if it is"
+
+
 class Proposal(NamedTuple):
     """What a name of the loop may be.
 
@@ -100,13 +103,14 @@ def _last_of_its_kind(
 
 
 def as_toml(proposals: list[Proposal], file: str, place: str) -> str:
-    """The mapping as a file: what is not sure is marked, what is missing stands below."""
+    """The mapping as a file: what is not sure is a comment until it has been read, what is missing stands below."""
     lines = [f"# {file} in the place of the {place}: names of the loop, and what they are in the FMU", f"[{place}]"]
     for each in proposals:
         if each.theirs is not None:
             unit = f"in {each.port.unit}" if each.port.unit else ""
-            notes = ", ".join(note for note in (unit, "" if each.sure else "NOT SURE") if note)
-            lines.append(f"{each.port.variable} = {dumps(each.theirs)}" + (f"  # {notes}" if notes else ""))
+            notes = ", ".join(note for note in (unit, "" if each.sure else NOT_SURE) if note)
+            entry = f"{'' if each.sure else '# '}{each.port.variable} = {dumps(each.theirs)}"
+            lines.append(entry + (f"  # {notes}" if notes else ""))
     missing = [each.port for each in proposals if each.theirs is None]
     for needed in (True, False):
         names = [port.variable for port in missing if (port.name not in OPTIONAL) == needed]

@@ -6,15 +6,14 @@ from shlex import quote
 from typing import TYPE_CHECKING, Unpack
 
 from ...fmus.errors import BuildError, NotPossible
-from ...fmus.origin import is_stale, located
+from ...fmus.origin import is_stale, located, origin_of
 from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError
 from ..cosimulation.system import System
 from ..cosimulation.wiring import fit
 from .mapped_names import require_known
-from .places import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile
-from .settings import Changes, Settings, chosen_build, loop, running, settings
-from .stale_fmus import warn_of_stale
+from .places import BUILD, BUILDS, COMPARATORS, NATIVE, PLACES, NameOrFile
+from .settings import Changes, Settings, chosen_build, loop, own_frequency, running, settings
 
 if TYPE_CHECKING:
     from ...fmus.fmu import Fmu
@@ -34,17 +33,23 @@ def built(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]
     return built_together([settings(given, **changes)])[0]
 
 
-def built_together(loops: Iterable[Settings]) -> list[Settings]:
-    """What `built` makes of each of several loops that are given the same folder; their FMUs are in one folder then,
-    and of one build where none is asked for. The errors are those of `built`."""
-    return _checked(list(loops), _in_cache)
+def built_together(loops: Iterable[Settings], alike: bool = True) -> list[Settings]:
+    """What `built` makes of each of several loops that are given the same folder; their FMUs are in one folder then.
+    The errors are those of `built`.
+
+    Args:
+        alike: they are of one build too, where none is asked for.
+    """
+    return _checked(list(loops), _in_cache, alike)
 
 
-def _checked(loops: list[Settings], build_in: "Place") -> list[Settings]:
+def _checked(loops: list[Settings], build_in: "Place", alike: bool = True) -> list[Settings]:
     if loops[0].folder == BUILD:
         loops = _refreshed(loops, build_in)
-    common = NATIVE if all(chosen_build(made) == NATIVE for made in loops) else BUILDS[0]
-    loops = [made.replace(build=made.build or common) for made in loops]
+    found = [chosen_build(made) for made in loops]
+    if alike and BUILDS[0] in found:
+        found = [BUILDS[0]] * len(found)
+    loops = [made.replace(build=made.build or build) for made, build in zip(loops, found, strict=True)]
     for made in loops:
         require_there(made)
     return loops
@@ -64,9 +69,24 @@ def require_there(made: Settings) -> System:
         where = "" if made.folder == BUILD else f" --output {quote(str(made.folder))}"
         only = f" --build {NATIVE}" if made.build == NATIVE else ""
         name = f" {missing[0].stem}" if missing[0].stem in COMPARATORS else ""
-        raise DrivelineError(f"there is no FMU {missing[0]}; `driveline build{name}{only}{where}` makes it")
+        what, it = (f"there is no FMU {missing[0]}", "it")
+        if len(missing) == len(system.own) > 1:
+            what, it = f"{missing[0].parent} has none of the FMUs {', '.join(path.stem for path in missing)}", "them"
+        raise DrivelineError(f"{what}; `driveline build{name}{only}{where}` makes {it}")
     warn_of_stale(system)
     return system
+
+
+def warn_of_stale(system: System) -> None:
+    """Names, once, the FMUs of a system that were not made from the sources that are installed.
+
+    Those of the project tell what made them. Of the others, and of ours that somebody gives by their path, only those
+    that tell it are judged.
+    """
+    own = system.own
+    found = [path for name, path in system.instances.items() if path.is_file() and (name in own or origin_of(path))]
+    if found := [path for path in found if is_stale(path)]:
+        warn_once(f"stale, not made from the sources that are installed: {', '.join(map(str, found))}")
 
 
 def require_fitting(loops: Iterable[Settings]) -> None:
@@ -127,6 +147,26 @@ def _needed(loops: Iterable[Settings]) -> Needed:
 def _say(new: Sequence[Path]) -> None:
     if new:
         warn_once(f"built, as missing or stale: {', '.join(path.stem for path in new)}, in {new[0].parent}")
+
+
+def frequency_of_plant(made: Settings) -> float | None:
+    """Frequency in Hz at which the drive train of the car swings that the FMU of the plant tells of: by the vehicle
+    file that it was built with, if it is ours, else by its parameters; None: it is the default car's, which is said
+    where the FMU tells nothing."""
+    system, design = loop(made), PLACES["plant"][0]
+    path = system.instances["plant"]
+    if path.stem in PLACES["plant"] and (origin := origin_of(path)):
+        if not origin.start_values:
+            return None
+        if beside := origin_of(path.with_name(f"{design}.fmu")):
+            from ...fmus.catalogue import FMUS  # all equations, which a run of the default car does not need
+
+            return own_frequency({**FMUS[design].block.Parameters._field_defaults, **beside.start_values})
+    else:
+        if told := own_frequency(fit(system).parameters(made.parameters)["plant"]):
+            return told
+    warn_once(f"{path} tells no C, J_1 and J_2: the band of the metrics is that of the default car; --vehicle tells it")
+    return None
 
 
 def made_if_missing(fmu: "Fmu", folder: Path, build: str) -> Path:

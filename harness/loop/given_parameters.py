@@ -1,21 +1,20 @@
 """Settings with the parameters that a user gives: files of car and controller, and values by name."""
 
 import dataclasses
-import logging
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
 from ...fmus.unit_conversion import factor
+from ..base.collected_warnings import warn_once
 from ..base.errors import DrivelineError, WiringError
+from ..base.parameter_words import said
 from ..cosimulation.interface import Interface, unit_of
 from ..cosimulation.parameter_changes import parted
 from ..cosimulation.system import System
 from ..cosimulation.wiring import find, fit, out_of_bounds, require
-from .built_fmus import built
+from .built_fmus import built_together
 from .places import PLANTS, ROAD_LOAD
 from .settings import Settings, loop, own_frequency
-
-LOG = logging.getLogger(__name__)
 
 
 class NotTaken(DrivelineError):
@@ -23,13 +22,24 @@ class NotTaken(DrivelineError):
 
 
 def built_with(
-    given: Settings,
+    given: Iterable[Settings], vehicle: Path | None, parameters: Path | None, assigned: Mapping[str, float]
+) -> list[Settings]:
+    """What `built` makes of each of several settings that are given the same folder, as `with_parameters` has them. The
+    errors are those of both."""
+    given = list(given)
+    for each in given:
+        require_of_plant(assigned, str(each.plant))
+    return [with_parameters(each, vehicle, parameters, assigned) for each in built_together(given, alike=False)]
+
+
+def with_parameters(
+    made: Settings,
     vehicle: Path | None,
     parameters: Path | None,
     assigned: Mapping[str, float],
     one_of_several: bool = False,
 ) -> Settings:
-    """What `built` makes of settings, with what the files name, for every instance that has it, and with the values of
+    """Settings, whose FMUs are there, with what the files name, for every instance that has it, and with the values of
     `instance.parameter`, which go before.
 
     Args:
@@ -37,12 +47,9 @@ def built_with(
 
     Raises:
         WiringError: the FMUs do not have a parameter, or not with that value or in that unit.
-        DrivelineError: an FMU is missing.
         ParameterFileError: a file is refused.
         NotTaken: the controller does not have all that its file names.
     """
-    _require_of_plant(assigned, str(given.plant))
-    made = built(given)
     system = loop(made)
     values, car, frequency = _of_files(system, vehicle, parameters) if vehicle or parameters else ({}, {}, None)
     if one_of_several:
@@ -54,8 +61,12 @@ def built_with(
     return made
 
 
-def _require_of_plant(names: Collection[str], plant: str) -> None:
-    """Refuses parameters that a plant of the project lacks and another one has."""
+def require_of_plant(names: Collection[str], plant: str) -> None:
+    """Refuses parameters that a plant of the project lacks and another one has.
+
+    Raises:
+        WiringError: names them, and that plant.
+    """
     if not (names and plant in PLANTS):
         return
     from ...fmus.catalogue import FMUS  # all equations, which a run of FMUs does not need
@@ -65,7 +76,8 @@ def _require_of_plant(names: Collection[str], plant: str) -> None:
         place, _, parameter = name.partition("@")[0].partition(".")
         having = [other for other in PLANTS if parameter in FMUS[other].block.Parameters._fields]
         if place == "plant" and having and plant not in having:
-            problems.append(f"{name}: {plant} has no parameter {parameter}; --plant {' or '.join(having)} has it")
+            others = f"--plant {' or '.join(having)}"
+            problems.append(said("elsewhere", name=name, plant=plant, parameter=parameter, others=others))
     if problems:
         raise WiringError("\n".join(problems))
 
@@ -102,7 +114,7 @@ def _of_files(
                 own = f"it takes {taken}, and the rest stays its own: it may be another car than that of the file"
             else:
                 own = "the file reaches the other blocks alone"
-            LOG.warning("%s has no parameter %s: %s", plant, lacks, own)
+            warn_once(f"{plant} has no parameter {lacks}: {own}")
         car = {name: values.get(name, usual[name]) for name in ROAD_LOAD if name not in names["plant"]}
     require(
         problem

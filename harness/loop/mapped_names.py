@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ...fmus.names import meant
 from ..base.errors import WiringError
+from ..base.known_names import nearest
 from ..cosimulation.limits import Limits
 from .places import CONNECTIONS, INPUTS, OFFERED, OUTPUTS, PARAMETERS, PLACES
 
@@ -14,15 +15,21 @@ def mappings(
     mapping: Mapping[str, str], plants: Sequence[str], controllers: Sequence[str], limits: Limits
 ) -> dict[tuple[str, str], dict[str, str]]:
     """What of a mapping is for each plant with each controller: of several FMUs of somebody else in a place, an entry
-    is for those that have the variable; blocks of the project beside them get none.
+    is for those that have the variable, and one of a table that is named as an FMU's file for that FMU alone; blocks
+    of the project beside them get none.
 
     Args:
         plants, controllers: names of blocks, or paths of FMUs.
     """
     places = {"plant": plants, "controller": controllers}
     own = {place: _entries(mapping, place, blocks, limits) for place, blocks in places.items()}
-    others = {name: theirs for name, theirs in mapping.items() if name.partition(".")[0] not in places}
-    return {(p, c): others | own["plant"][p] | own["controller"][c] for p in plants for c in controllers}
+    files = {Path(block).stem for blocks in places.values() for block in blocks}
+
+    def others(*blocks: str) -> dict[str, str]:
+        named = {*places, *files} - {Path(block).stem for block in blocks}
+        return {name: theirs for name, theirs in mapping.items() if name.partition(".")[0] not in named}
+
+    return {(p, c): others(p, c) | own["plant"][p] | own["controller"][c] for p in plants for c in controllers}
 
 
 def _entries(
@@ -51,15 +58,17 @@ def require_known(mapping: Mapping[str, str]) -> None:
     Raises:
         WiringError: names it, and what is near, else what the loop exchanges with the place.
     """
-    problems = []
+    problems = dict[str, None]()
     for name, theirs in mapping.items():
         place, _, variable = name.partition(".")
-        if place in PLACES and variable not in (known := _known(place)):
+        if place not in PLACES:
+            problems[f"{place} is no place of the loop, nor the name of an FMU in it; {nearest(place, PLACES)}"] = None
+        elif variable not in (known := _known(place)):
             ports = (port for each in (CONNECTIONS, OFFERED) for connection in each for port in connection[:2])
             ports = [*ports, *(port.name for each in (INPUTS, PARAMETERS, OUTPUTS) for port in each)]
             there = dict.fromkeys(port.partition(".")[2] for port in ports if port.startswith(f"{place}."))
             near = meant(variable, known) or f"known are {', '.join(there)}, and the parameters of our blocks"
-            problems.append(f"{name}={theirs}: nothing in the loop is called {name}; {near}")
+            problems[f"{name}={theirs}: nothing in the loop is called {name}; {near}"] = None
     if problems:
         raise WiringError("\n".join(problems))
 

@@ -67,12 +67,7 @@ INPUTS = (
     Port("plant.slope", "rad"),
 )
 
-PARAMETERS = (
-    Port("plant.v_0", "m/s"),
-    Port("plant.T_0", "N.m"),
-    Port("motor.seed", None),
-    Port("can.seed", None),
-)
+PARAMETERS = (Port("plant.v_0", "m/s"), Port("plant.T_0", "N.m"), Port("motor.seed", None), Port("can.seed", None))
 
 OUTPUTS = (
     Port("controller.T_ref", "N.m"),

@@ -70,14 +70,14 @@ class Settings:
             -> value of a tunable one from the time t in s on.
         road_load: what the road load takes of a plant that has no such parameter: i, r, m, g, c_rr, c_wa -> value.
         frequency: at which the drive train swings, Hz, for the band of the metrics; None: by C, J_1 and J_2 among the
-            parameters of the controller, where all are, else that of the default car.
+            parameters of the controller, where all are, else as the FMU of the plant tells.
         step_size: communication step in s.
         scheme: when outputs reach inputs.
         seed: of all noise and jitter.
         folder: of the built FMUs.
         build: "native" or "python"; None: see `chosen_build`.
         mapping: names of the loop -> names of an FMU: what the loop calls `plant.T_gear` is `Shaft.tau` of the FMU in
-            the place of the plant; or the path of a file that has them.
+            the place of the plant; `their_car.T_gear` is that of `their_car.fmu`; or the path of a file with them.
         limits: of FMUs that are given by their path.
         tolerance: relative, of FMUs that integrate; None: that of each FMU's default experiment.
 
@@ -107,8 +107,9 @@ class Settings:
         given = {name: PLACES[name][0] if block is None else block for name, block in self.blocks.items()}
         if isinstance(self.mapping, str | PathLike):
             object.__setattr__(self, "mapping", _read_mapping(Path(self.mapping)))
-        given |= {name: dict(getattr(self, name) or {}) for name in ("parameters", "road_load", "mapping")}
-        for name, value in {**given, "scheme": Scheme(self.scheme), "folder": Path(self.folder)}.items():
+        others = {name: dict(getattr(self, name) or {}) for name in ("parameters", "road_load")}
+        others["mapping"] = _of_places(self.mapping or {}, given)
+        for name, value in {**given, **others, "scheme": Scheme(self.scheme), "folder": Path(self.folder)}.items():
             object.__setattr__(self, name, value)
 
     @property
@@ -157,6 +158,26 @@ def _read_mapping(path: Path) -> dict[str, str]:
     from ..cosimulation.mapping import read  # who asks for help alone needs no fmpy
 
     return read(path)
+
+
+def _of_places(mapping: Mapping[str, str], blocks: Mapping[str, NameOrFile]) -> dict[str, str]:
+    """The mapping of a loop with what stands in a table named as the file of an FMU as of its place, before what stands
+    there.
+
+    Args:
+        blocks: what stands in each place.
+
+    Raises:
+        WiringError: two places have a file of that name.
+    """
+    places = {Path(block).stem: place for place, block in blocks.items()}
+    parts = [(*name.partition("."), theirs) for name, theirs in mapping.items()]
+    for of, *_ in parts:
+        if of not in PLACES and len(same := [place for place, block in blocks.items() if Path(block).stem == of]) > 1:
+            both = " and ".join(same)
+            raise WiringError(f"--map {of}: {both} are both {of}.fmu; rename one, or name the tables {both}")
+    own = {f"{places[of]}.{ours}": theirs for of, _, ours, theirs in parts if of in places.keys() - PLACES.keys()}
+    return {f"{of}{dot}{ours}": its for of, dot, ours, its in parts if of in PLACES or of not in places} | own
 
 
 def settings(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> Settings:

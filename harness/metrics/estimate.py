@@ -15,10 +15,7 @@ from .notebook_table import NotebookTable
 class EstimateMetrics(NotebookTable):
     """Of T_gear_hat, compared with the true gear torque at the samples of the controller."""
 
-    bias: Annotated[
-        float,
-        Metric("1", "mean error in contact, over the gear torque", Column("bias", "%", 1e2, 1)),
-    ]
+    bias: Annotated[float, Metric("1", "mean error in contact, over the gear torque", Column("bias", "%", 1e2, 1))]
     error_rms: Annotated[float, Metric("N.m", "rms of the error in contact", Column("error,\nrms", "N.m", 1.0, 2))]
     wrong_mode: Annotated[
         float,
@@ -29,8 +26,7 @@ class EstimateMetrics(NotebookTable):
         ),
     ]
     wrong_gap: Annotated[
-        float,
-        Metric("1", "the same, of the time in the gap", Column("of the time\nin the gap", "%", 1e2, 0)),
+        float, Metric("1", "the same, of the time in the gap", Column("of the time\nin the gap", "%", 1e2, 0))
     ]
     absent: Mapping[str, str] = field(default_factory=dict)
     """Why metrics have no value, by their names."""
@@ -41,7 +37,7 @@ def estimate_metrics(results: np.ndarray) -> EstimateMetrics:
     sampled = at_samples(results)
     told = {"controller.T_gear_hat", "controller.phi_hat"} <= set(results.dtype.names or ())
     true = sampled["plant.T_gear"]
-    estimated = sampled["controller.T_gear_hat"] if told else 0.0 * true
+    estimated = sampled["controller.T_gear_hat"] if told else true
     contact, wrong = true != 0.0, np.sign(true) != np.sign(estimated)
     error = (estimated - true)[contact]
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 SMOOTHED = 0.5
-"""Width in Hz over which the spectra are averaged."""
+"""Width in Hz over which the spectra are added up."""
 
 LEAST = 1e-3
 """Share of its largest power, below which the input has nothing to answer."""
@@ -16,11 +16,10 @@ def frequency_response(u: np.ndarray, y: np.ndarray, T_s: float) -> tuple[np.nda
     U, Y = np.fft.rfft(np.diff(u)), np.fft.rfft(np.diff(y))
     f = np.fft.rfftfreq(len(u) - 1, T_s)
     width = max(1, round(SMOOTHED * (len(u) - 1) * T_s))
-    mean = np.ones(width) / width
-    power = np.convolve(np.abs(U) ** 2, mean, "same")
+    power = np.convolve(np.abs(U) ** 2, np.ones(width), "same")
     answer = np.full(len(f), complex(np.nan, np.nan))
     present = power > LEAST * power.max(initial=0.0)
-    np.divide(np.convolve(Y * U.conj(), mean, "same"), power, out=answer, where=present)
+    np.divide(np.convolve(Y * U.conj(), np.ones(width), "same"), power, out=answer, where=present)
     return f, answer
 
 

@@ -108,11 +108,7 @@ class Metrics(NotebookTable):
     gear_torque_peak: Annotated[float, Metric("N.m", "largest magnitude of the gear torque")]
     end_swing: Annotated[float, Metric("N.m", "largest swing of the gear torque in the last second")]
     plateau_swing: Annotated[
-        float,
-        Metric(
-            "N.m",
-            "mean swing of the gear torque about a straight line at the ends of the demand's plateaus",
-        ),
+        float, Metric("N.m", "mean swing of the gear torque about a straight line at the ends of the demand's plateaus")
     ]
     absent: Mapping[str, str] = field(default_factory=dict)
     """Why metrics have no value, by their names."""
@@ -133,12 +129,7 @@ class RideMetrics(NotebookTable):
     ]
     jerk_rms: JerkRms
     speed_error_rms: Annotated[
-        float,
-        Metric(
-            "m/s",
-            "rms of simulated less recorded speed",
-            Column("speed\nerror", "km/h", 3.6, 2),
-        ),
+        float, Metric("m/s", "rms of simulated less recorded speed", Column("speed\nerror", "km/h", 3.6, 2))
     ]
     absent: Mapping[str, str] = field(default_factory=dict)
     """Why metrics have no value, by their names."""

@@ -174,10 +174,14 @@ def require_same_text(text: str, path: Path) -> None:
         )
 
 
+FOLLOWING = ("frequency", "road_load", "start_values")
+"""Of what tells runs apart that which mainly follows from the rest, and is named where nothing else differs."""
+
+
 def differences(before: Any, now: Any, name: str = "") -> Iterator[str]:
     """In what two runs differ, in words."""
     if isinstance(before, dict) and isinstance(now, dict):
-        for key in sorted(before.keys() | now.keys()):
+        for key in sorted(before.keys() | now.keys(), key=lambda key: (key in FOLLOWING, key)):
             yield from differences(before.get(key), now.get(key), f"{name} {key}".strip())
     elif before in ({}, None) and now in ({}, None):
         return  # nothing is set in either

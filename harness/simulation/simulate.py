@@ -13,12 +13,13 @@ import numpy as np
 from ..base.argument_kinds import A_MANOEUVRE, require_kind
 from ..base.collected_warnings import warn_once
 from ..base.errors import RunEnded, SimulationError, WiringError
+from ..base.parameter_words import said
 from ..cosimulation.experiment import Experiment, Source, require_steps
 from ..cosimulation.results import Results
 from ..cosimulation.runs import run
 from ..cosimulation.system import Port, System
 from ..cosimulation.wiring import fit
-from ..loop.built_fmus import require_there
+from ..loop.built_fmus import frequency_of_plant, require_there
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
 from ..loop.settings import Changes, Settings, own_frequency, running
 from ..loop.settings import settings as settings_of
@@ -90,19 +91,14 @@ def simulate(
         damping = f"with {made.controller_name}" if made.control else "without damping"
         warn_once(f"{results.ended} of {manoeuvre.duration:g} s, in {manoeuvre.name} {damping}: it has no metrics")
     told = {name.partition(".")[2]: value for name, value in given.items() if name.startswith("controller.")}
-    results.frequency = made.frequency or own_frequency(told)
+    results.frequency = made.frequency or own_frequency(told) or frequency_of_plant(made)
     return results
 
 
 def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:
     """Names what makes a run that is hardly meant."""
     if given["plant.v_0"] > 0.0 and given["plant.T_0"] != manoeuvre.T_0:
-        LOG.warning(
-            "plant.T_0 = %g N.m: the drive train starts with another torque than the %g N.m that the driver demands, "
-            "and swings from the first instant on",
-            given["plant.T_0"],
-            manoeuvre.T_0,
-        )
+        LOG.warning(said("torque", T_0=float(given["plant.T_0"]), demand=float(manoeuvre.T_0)))
     if step_size > T_S * (1.0 + 1e-9):
         warn_once(
             f"the communication step of {step_size * 1e3:g} ms is longer than the {T_S * 1e3:g} ms between samples of "

@@ -24,12 +24,7 @@ GAP = "teeth apart"
 
 BAND = f"settled: ± {100.0 * SETTLED:.0f} % of the step"
 
-SAID = {
-    "overshoot": "overshoot",
-    "settling_time": "settling",
-    "gear_torque_rms": "rms",
-    "jerk_rms": "rms",
-}
+SAID = {"overshoot": "overshoot", "settling_time": "settling", "gear_torque_rms": "rms", "jerk_rms": "rms"}
 """How a note names a metric."""
 
 

@@ -11,20 +11,7 @@ from .colours import VERMILION
 from .figure_options import PLAIN, FigureOptions
 from .figure_style import draw
 from .panels import DASHED, Axis, Drawing, Panel, Part, Spans
-from .signal_lines import (
-    DEMAND,
-    T_GEAR,
-    T_MOT,
-    T_RIM,
-    WHEEL,
-    Line,
-    Row,
-    Runs,
-    column,
-    envelope_of,
-    interval,
-    looks_of,
-)
+from .signal_lines import DEMAND, T_GEAR, T_MOT, T_RIM, WHEEL, Line, Row, Runs, column, envelope_of, interval, looks_of
 from .step_figure import size_of
 
 THIN_T_MOT = T_MOT._replace(dashes=DASHED, width=0.9)

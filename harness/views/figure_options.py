@@ -2,11 +2,7 @@
 
 from typing import NamedTuple
 
-KINDS = {
-    "png": "picture",
-    "pdf": "for print, text in TrueType fonts",
-    "svg": "for the web, text as outlines",
-}
+KINDS = {"png": "picture", "pdf": "for print, text in TrueType fonts", "svg": "for the web, text as outlines"}
 """The files that a figure can be, and what for."""
 
 USUAL_KINDS = ("png",)

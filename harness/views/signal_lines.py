@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..metrics.band_filter import derivative, envelope
-from .colours import BLACK, BLUE, GREEN, GREY, OLIVE, ORANGE, PURPLE, SKY, VERMILION
+from .colours import BLACK, BLUE, GREEN, GREY, OLIVE, ORANGE, PURPLE, SKY, VERMILION, WINE
 from .panels import DASH_DOT, DASHED, DOTTED, SOLID, Curve, Dashes, Panel, Part, seen
 
 KMH = 3.6
@@ -28,13 +28,13 @@ UNDAMPED: Look = (GREY, SOLID, 1.8)
 CONTROLLERS: tuple[Look, ...] = (
     (BLUE, SOLID, 0.9),
     (VERMILION, DASHED, 0.9),
-    (GREEN, DASH_DOT, 0.9),
+    (WINE, DASH_DOT, 0.9),
     (ORANGE, DOTTED, 1.2),
     (PURPLE, (8.0, 2.0), 0.9),
     (SKY, (2.0, 2.0), 1.2),
     (OLIVE, DASHED, 1.2),
 )
-"""Those of the controllers, in turn; a page has the same."""
+"""Those of the controllers, in turn; a page has the same. Green is what the control adds."""
 
 
 def looks_of(runs: Iterable[str]) -> dict[str, Look]:
