@@ -29,7 +29,7 @@ $(DEMO): $(INSTALLED)
 
 $(READY): $(INSTALLED)
 	$(environment)
-	$(INSTALL) '.[recordings,replay,design,identification,cluster,notebook,dev]'
+	$(INSTALL) '.[recordings,replay,design,identification,cluster,notebook,dev$(MORE)]'
 	@touch $(DEMO) $@
 
 setup: $(READY) ## the virtual environment alone, with all that the other targets need
@@ -40,7 +40,8 @@ demo: $(DEMO) ## build the FMUs, compare with and without damping, replay a shor
 	$(BIN)/driveline replay harness/manoeuvres/data/town_drive.csv --replace
 
 # bytecode is kept, whatever the environment says: tests are collected in half the time
-TEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
+# and workers that share the cores start no threads of their own
+TEST := PYTHONDONTWRITEBYTECODE= OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist worksteal
 
 test: $(READY) ## the tests but the slow ones; once set up, without network
 	$(TEST) -m 'not slow'

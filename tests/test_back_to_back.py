@@ -44,7 +44,7 @@ EFFECTS = {
 """That are off by default."""
 
 
-@pytest.mark.parametrize("name", slow(EFFECTS, but=("MotorTorqueLoop",)))
+@pytest.mark.parametrize("name", EFFECTS)
 @pytest.mark.slow
 def test_effects_that_are_off_by_default_are_the_same_in_functions_and_both_builds(both_built, name):
     random = random_inputs(FMUS[name].block, STEPS)

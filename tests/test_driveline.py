@@ -107,6 +107,19 @@ def test_the_import_waits_for_nothing_and_a_missing_package_is_named(tmp_path: P
     assert "driveline-damping[identification]" in ran(missing + identify, tmp_path)
 
 
+def test_the_star_leaves_out_what_needs_an_extra_that_is_not_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    find, given = vars(driveline)["__getattr__"], dict[str, object]()
+
+    def found(name: str) -> object:
+        if name == "identify":
+            raise driveline.MissingExtra(name)
+        return find(name)
+
+    monkeypatch.setattr(driveline, "__getattr__", found)
+    exec("from driveline import *", given)
+    assert given.keys() - {"__builtins__"} == DECLARED.keys() - {"identify"}
+
+
 def test_one_thread_at_a_time_imports_a_name(monkeypatch: pytest.MonkeyPatch) -> None:
     """Modules that import each other are half imported for the others."""
     importing: list[str] = []

@@ -27,10 +27,6 @@ def blocks(page: Path, *languages: str) -> Iterator[str]:
     yield from (code for language, code in BLOCK.findall(text_of(page)) if language in languages)
 
 
-def named(page: Path) -> str:
-    return page.relative_to(ROOT).as_posix()
-
-
 def commands(script: str) -> Iterator[list[str]]:
     """The arguments of each `driveline` in lines of a shell, up to what the shell does with its output."""
     for line in script.replace("\\\n", " ").splitlines():

@@ -15,7 +15,8 @@ import yaml
 import driveline
 from driveline.harness.commands.cli import COMMANDS, complete_commands, main, parser
 from tests import ROOT
-from tests.docs.pages import BLOCK, INLINE, PAGES, blocks, commands, named, prose, text_of
+from tests.docs.pages import BLOCK, INLINE, PAGES, blocks, commands, prose, text_of
+from tests.together import together
 
 PUBLIC = frozenset(dir(driveline))
 
@@ -34,7 +35,7 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("page", PAGES, ids=named)
+@together("page", PAGES)
 def test_what_a_page_shows_can_be_typed(page: Path, checkout: Path) -> None:
     for script in blocks(page, "sh"):
         for arguments in commands(script):

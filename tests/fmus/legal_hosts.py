@@ -27,8 +27,9 @@ STEPS = ("step=0.0007", "step=0.003", "step=0.01")
 LASTS = "lasts"
 LONG = {"DampingController": 604_800, "MotorTorqueLoop": 604_800}
 LONG_ELSE, LONG_IN_PYTHON = 3600, 10
-"""How long, in s: native FMUs of these names, others, and those that run Python. Each takes a quarter of a minute of a
-processor at most; a week would be 1 minute for the bus, 3 and 10 for the plants."""
+"""How long, in s: native FMUs for FMI 2.0 of these names, others, and those that run Python. Those for FMI 3.0 count
+steps by the same C. Each takes a quarter of a minute of a processor at most; a week would be 1 minute for the bus, 3
+and 10 for the plants."""
 
 HOSTS = (
     LegalHost("sets inputs before initialization mode", ("inputs=before",)),

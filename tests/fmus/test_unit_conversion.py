@@ -121,5 +121,6 @@ def test_what_does_not_convert_is_refused_by_name(unit, target_unit, reason):
 @pytest.mark.parametrize("text", ["12000 1/min", "12000 rpm", "12000rpm", "1.2e4U/min"])
 def test_a_unit_follows_its_number_and_begins_with_a_digit_after_a_blank_alone(text):
     assert quantity(text, "rad/s") == pytest.approx(400.0 * pi)
+    assert quantity("9.3:1", "1") == 9.3
     with pytest.raises(ValueError, match="must be a number and a unit"):
         quantity("120001", "rad/s")

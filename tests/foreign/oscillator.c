@@ -97,7 +97,12 @@ int fmi2GetDerivatives(Component c, double dx[], size_t n)
     IN_DERIVATIVES;
     return 0;
 }
-int fmi2GetEventIndicators(Component c, double z[], size_t n) { return n == INDICATORS ? 0 : 3; }
+int fmi2GetEventIndicators(Component c, double z[], size_t n)
+{
+    if (n != INDICATORS) return 3;
+    for (size_t i = 0; i < n; i++) z[i] = 1;
+    return 0;
+}
 int fmi2GetNominalsOfContinuousStates(Component c, double nominals[], size_t n)
 {
     nominals[0] = nominals[1] = NOMINAL;

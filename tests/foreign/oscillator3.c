@@ -32,7 +32,11 @@ int fmi3CompletedIntegratorStep(Component c, bool no_set, bool *enter, bool *end
 int fmi3SetTime(Component c, double time) { return fmi2SetTime(c, time); }
 int fmi3GetNumberOfContinuousStates(Component c, size_t *n) { *n = 2; return 0; }
 int fmi3GetNumberOfEventIndicators(Component c, size_t *n) { *n = INDICATORS; return 0; }
-int fmi3GetEventIndicators(Component c, double z[], size_t n) { return 0; }
+int fmi3GetEventIndicators(Component c, double z[], size_t n)
+{
+    for (size_t i = 0; i < n; i++) z[i] = 1;
+    return 0;
+}
 int fmi3SetContinuousStates(Component c, const double values[], size_t n) { return fmi2SetContinuousStates(c, values, n); }
 int fmi3GetContinuousStates(Component c, double values[], size_t n) { return fmi2GetContinuousStates(c, values, n); }
 int fmi3GetContinuousStateDerivatives(Component c, double dx[], size_t n) { return fmi2GetDerivatives(c, dx, n); }

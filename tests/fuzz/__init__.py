@@ -1,29 +1,12 @@
 """Fuzz targets: odd input by the thousand, each answered as promised or told as a fault."""
 
-from tests.fuzz import (
-    archives,
-    caches,
-    calls,
-    campaigns,
-    options,
-    parameter_files,
-    plants,
-    recordings,
-    states,
-    swollen,
-)
+from importlib import import_module
+from pkgutil import iter_modules
+
 from tests.fuzz.target import TARGETS
 
-__all__ = [
-    "TARGETS",
-    "archives",
-    "caches",
-    "calls",
-    "campaigns",
-    "options",
-    "parameter_files",
-    "plants",
-    "recordings",
-    "states",
-    "swollen",
-]
+__all__ = ["TARGETS"]
+
+for module in iter_modules(__path__, f"{__name__}."):
+    if not module.name.endswith("__main__"):
+        import_module(module.name)

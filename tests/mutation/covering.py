@@ -34,12 +34,12 @@ LAST = {"models/": "tests/docs/studies/test_study.py", "fmus/description/": "tes
 
 
 def rounds(file: str) -> list[list[str]]:
-    """Files of tests in the order in which they are run: those of the file itself, those that import it, those that
-    belong to what imports it, all of the room, and those of LAST."""
+    """Files of tests in the order in which they are run: those of the file itself, those that import it from its room,
+    those that name it, those that belong to what imports it, all of the room, and those of LAST."""
     path, found = Path(file), []
     if path.suffix == ".py":
         last = [tests for folder, tests in LAST.items() if file.startswith(folder)]
-        stages = [own(file), importing(path), near(path), room(path), last]
+        stages = [own(file), naming(f"{path.parent.name}.{path.stem}"), naming(path.stem), near(path), room(path), last]
     else:
         stages = [[name for name in IN_C.get(path.stem, ()) if (ROOT / name).exists()], list(CALLS)]
     for names in stages:
@@ -52,9 +52,9 @@ def own(file: str) -> list[str]:
     return [test for test in tests() if Path(test).stem == f"test_{Path(file).stem}"]
 
 
-def importing(path: Path) -> list[str]:
-    """Files of tests that name a module."""
-    return [test for test, named in tests().items() if path.stem in named]
+def naming(module: str) -> list[str]:
+    """Files of tests that name a module, or it with its room."""
+    return [test for test, named in tests().items() if module in named]
 
 
 def near(path: Path) -> list[str]:
@@ -73,7 +73,10 @@ def room(path: Path) -> list[str]:
 def tests() -> dict[str, set[str]]:
     """Files of tests, with the names in them that may be those of modules."""
     paths = [path for path in ROOT.glob("tests/**/test_*.py") if path.parent != Path(__file__).parent]
-    return {path.relative_to(ROOT).as_posix(): _names(path, r"[./](\w+)") for path in sorted(paths)}
+    both = r"[./](\w+)", r"(?=\b(\w+\.\w+))"
+    return {
+        path.relative_to(ROOT).as_posix(): set().union(*(_names(path, each) for each in both)) for path in sorted(paths)
+    }
 
 
 @cache

@@ -8,19 +8,16 @@ import pytest
 from docs.studies.foreign_loop import PARTS, STEP, Car, Loop, drawn, driven, logged
 from driveline.harness.identification.prior_knowledge import identify
 from driveline.harness.recordings.measurement import read_measurement
-from tests.slow import slow
 
 CAR = Car(J_2=0.42, C=96.0, phi_B=0.11, tau=0.0036)
 LOOPS = [
-    Loop(late_omega=0.001),
-    Loop("car first", late_T_load=0.0007, amplitude=15.0),
-    Loop("motor first", late_omega=0.0005, amplitude=50.0),
-    Loop(late_T_mot=0.003, late_T_load=0.003),
+    Loop("car first", late_omega=0.001, late_T_load=0.0007, amplitude=15.0),
+    Loop("motor first", late_T_mot=0.003, late_T_load=0.003, amplitude=50.0),
 ]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("loop", slow(LOOPS, but=LOOPS[:1]))
+@pytest.mark.parametrize("loop", LOOPS)
 def test_cars_in_other_loops_are_right_to_within_what_is_asked(loop: Loop, tmp_path: Path) -> None:
     logged(driven([CAR], [loop], [1])[..., 0], CAR, loop, 1, tmp_path / "drive.csv")
     found = identify(read_measurement(tmp_path / "drive.csv", CAR.i, CAR.r), CAR.known)

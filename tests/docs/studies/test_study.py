@@ -14,8 +14,9 @@ from docs.studies.pictures import FIGURES, SHOWN
 from docs.studies.study import STUDIES, Column, Measured, Table, differences, study
 from driveline.harness.views.panels import DASHED, Axis, Band, Curve, Drawing, Level, Panel
 from tests import ROOT
-from tests.docs.pages import PAGES, named, text_of
+from tests.docs.pages import PAGES, text_of
 from tests.skipping import skipped_if_impossible
+from tests.together import together
 
 MS = Column("settling", "ms", 0, 0.02)
 
@@ -97,7 +98,7 @@ def test_a_page_gets_its_tables_and_numbers(monkeypatch: pytest.MonkeyPatch) -> 
         list(disagreements(page.replace("tipin", "creep")))
 
 
-@pytest.mark.parametrize("page", PAGES, ids=named)
+@together("page", PAGES)
 def test_the_numbers_of_a_page_are_those_of_the_studies(page: Path) -> None:
     assert not [*disagreements(text_of(page))]
     for kind, name, part in numbers.SHOWN.findall(text_of(page)):
@@ -109,7 +110,7 @@ def test_the_numbers_of_a_page_are_those_of_the_studies(page: Path) -> None:
             assert name in numbers.TABLES
 
 
-@pytest.mark.parametrize("page", PAGES, ids=named)
+@together("page", PAGES)
 def test_no_table_of_a_page_has_a_measured_number_typed_by_hand(page: Path) -> None:
     ours = results.readme_table(data_file.read("results").measured.tables)
     assert not numbers.TYPED.findall(re.sub(r"^```.*?^```", "", text_of(page).replace(ours, ""), flags=re.M | re.S))

@@ -79,6 +79,8 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
         ("hat = 3", "hat is not known"),
         ("mass = 1200.0", "mass is not known; did you mean m?"),
         ("wheel_radius = 0.3", "wheel_radius is not known; did you mean r?"),
+        ("rad = 0.3", "rad is not known; did you mean r?"),
+        ("th = 0.3", "th is not known; did you mean k_th or h or d_th?"),
         ("torque = 300.0", "torque is not known; did you mean T_max?"),
         ("max_torque = 300.0", "max_torque is not known; did you mean T_max?"),
         ("tyre_radius = 0.3", "tyre_radius is not known; did you mean r?"),
@@ -102,6 +104,8 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
         ("k_d = 2.0", "k_d does not belong here: it is one of the controller, for the file of --parameters"),
         ("[plant]\nJ_1 = 0.09", "plant is a table; an entry stands alone, for all that have it: J_1 = 0.09"),
         ("plant.J_1 = 0.09", "plant is a table"),
+        ("gap = 2.5", 'gap = 2.5: a vehicle file takes 0 to 0.2 rad; "2.5 deg" is in degrees'),
+        ("frequency = 30.0", "frequency = 30 Hz, C = 117.4 N.m/rad: leave one out"),
     ],
 )
 def test_what_does_not_belong_in_a_vehicle_file_is_named_with_its_line(

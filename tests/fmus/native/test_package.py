@@ -16,7 +16,6 @@ from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native import compiler
 from tests import ROOT
 from tests.fmus.host import opened
-from tests.slow import slow
 from tests.together import together
 
 LARGEST = 150 * 1024
@@ -59,7 +58,7 @@ def test_it_needs_nothing_besides_itself(native, name):
 
 
 @pytest.mark.usefixtures("uncached_compiler")
-@pytest.mark.parametrize("name", slow(FMUS, but=["MotorTorqueLoop", "WheelSpeedCan"]))
+@every_fmu
 @pytest.mark.slow
 def test_a_rebuild_gives_the_same_bytes(native, native_builder, tmp_path, name):
     assert native_builder(FMUS[name], tmp_path).read_bytes() == (native / f"{name}.fmu").read_bytes()
@@ -67,9 +66,9 @@ def test_a_rebuild_gives_the_same_bytes(native, native_builder, tmp_path, name):
 
 @pytest.mark.usefixtures("uncached_compiler")
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="there is no cmake")
-@pytest.mark.parametrize("name", slow(["MotorTorqueLoop", "DampingController"], but=["MotorTorqueLoop"]))
 @pytest.mark.slow
-def test_its_sources_compile_with_fmpy(native, tmp_path, name):
+def test_its_sources_compile_with_fmpy(native, tmp_path):
+    name = "DampingController"
     folder = unpacked(native, tmp_path, name)
     shutil.rmtree(folder / "binaries")
     build_platform_binary(folder)

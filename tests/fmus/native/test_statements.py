@@ -61,6 +61,19 @@ def test_a_choice_between_equal_values_is_that_value() -> None:
     assert written(lambda x, y: where(x < y, x + y, x + y), ["x", "y"]) == ["y = x + y;"]
 
 
+def test_what_is_within_limits_is_not_limited_to_them_again() -> None:
+    once = written(operators.clip, ["x", "low", "high"])
+    assert (
+        written(lambda x, low, high: operators.clip(operators.clip(x, low, high), low, high), ["x", "low", "high"])
+        == once
+    )
+    for other in (lambda x, low, high: (x, high, low), lambda x, low, high: (x, low, x)):
+        twice = written(
+            lambda *v, other=other: operators.clip(*other(operators.clip(*v), *v[1:])), ["x", "low", "high"]
+        )
+        assert len(twice) > len(once)
+
+
 def test_what_only_one_side_of_a_choice_needs_is_computed_there() -> None:
     lines = written(lambda x, y: where(x < y, x * y, x), ["x", "y"])
     assert lines == ["double a1;", "if (x < y) {", "a1 = x * y;", "} else {", "a1 = x;", "}", "y = a1;"]

@@ -22,7 +22,7 @@ from driveline.harness.simulation.provenance import BEGINS_ANEW
 from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 from tests.signals import heed_signals, started
-from tests.slow import slow
+from tests.together import together
 
 TWO_CORES = {"LOKY_MAX_CPU_COUNT": 2}
 """Environment of a command with workers."""
@@ -77,7 +77,7 @@ MAINS = [
 ]
 
 
-@pytest.mark.parametrize("path", MAINS, ids=lambda path: path.stem)
+@together("path", MAINS)
 def test_every_module_that_is_run_is_stopped_so(path: Path) -> None:
     assert path.read_text(encoding="utf-8").endswith('\n\nif __name__ == "__main__":\n    script(main)\n')
 
@@ -211,7 +211,7 @@ def test_a_signal_that_is_ignored_stays_so(capsys: pytest.CaptureFixture[str]) -
         signal.signal(signal.SIGHUP, before)
 
 
-@pytest.mark.parametrize(("arguments", "code"), [(["--help"], 0), (["design"], 1), (["nothing"], 2)])
+@pytest.mark.parametrize(("arguments", "code"), [(["--help"], 0), (["car"], 1), (["nothing"], 2)])
 def test_a_reader_that_has_gone_is_no_traceback(arguments: list[str], code: int) -> None:
     reader, writer = os.pipe()
     os.close(reader)
@@ -237,7 +237,7 @@ def test_a_reader_that_goes_after_the_first_line_leaves_the_run_to_end(native: P
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
-@pytest.mark.parametrize(("words", "name"), [(["design"], "driveline design"), (["--help"], "driveline")])
+@pytest.mark.parametrize(("words", "name"), [(["car"], "driveline car"), (["--help"], "driveline")])
 def test_a_full_device_is_named_in_one_line(words: list[str], name: str) -> None:
     command = [sys.executable, "-m", "driveline", *words]
     with open("/dev/full", "w", encoding="utf-8") as full:
@@ -258,7 +258,7 @@ def test_a_full_disk_of_temporary_files_is_not_taken_for_stdout(
 
 
 @pytest.mark.skipif(os.name != "posix", reason="only shells of POSIX close streams")
-@pytest.mark.parametrize("closed", slow([">&-", "<&- >&- 2>&-"], but=["<&- >&- 2>&-"]))
+@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
 @pytest.mark.slow
 def test_a_stream_that_is_closed_stops_no_workers_and_is_no_file_of_ours(tmp_path: Path, closed: str) -> None:
     program = """

@@ -3,9 +3,20 @@ from typing import Any
 import pytest
 
 from driveline.harness.commands.arguments import filled
-from driveline.harness.commands.cli import parser
+from driveline.harness.commands.cli import main, parser
 
 Capsys = pytest.CaptureFixture[str]
+
+
+def answer(capsys: Capsys, *words: str) -> tuple[Any, str, str]:
+    """Exit code and what stands on stdout and stderr."""
+    capsys.readouterr()
+    try:
+        code: Any = main(words)
+    except SystemExit as end:
+        code = end.code
+    printed = capsys.readouterr()
+    return code, printed.out, printed.err
 
 
 def given(*words: str) -> Any:

@@ -25,11 +25,7 @@ FILES = {
     "frames": "date Mon Jan 5 10:15:30 am 2026\nbase hex  timestamps absolute\n",
 }
 SAMPLES = {"--column": "v=x", "--from": "1", "--to": "2", "--dbc": "x.dbc", "--set": "motor.T_max=3"}
-COMMANDS = {
-    "replay": ["replay"],
-    "identify": ["identify"],
-    "simulate": ["simulate", "--manoeuvre"],
-}
+COMMANDS = {"replay": ["replay"], "identify": ["identify"], "simulate": ["simulate", "--manoeuvre"]}
 
 
 @pytest.mark.parametrize("command", COMMANDS)

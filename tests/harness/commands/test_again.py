@@ -14,15 +14,9 @@ from driveline.harness.commands import again
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.same_results import different_files, further_cases
 from driveline.harness.simulation.case_archive import GOES_ON
-from tests.harness.commands import Capsys
+from tests.harness.commands import Capsys, answer
 
 NAME = "TwoMassDriveline_tipin0_DampingController"
-
-
-def answer(capsys: Capsys, *words: str) -> tuple[int, str, str]:
-    capsys.readouterr()
-    code, printed = main(words), capsys.readouterr()
-    return code, printed.out, printed.err
 
 
 @pytest.fixture(scope="module")
@@ -104,15 +98,15 @@ def test_a_number_that_is_another_one_is_named(made: Path, tmp_path: Path, capsy
     ("change", "named"),
     [
         (lambda record: record.pop("versions"), "is no record of a result, or one of an earlier version"),
-        (lambda record: record.update(files=["x.csv"]), "is no record of a result, or one of an earlier version"),
-        (lambda record: record.update(folder=7), "is no record of a result, or one of an earlier version"),
-        (lambda record: record.update(command_line=5), "is no record of a result, or one of an earlier version"),
-        (lambda record: record.update(command_line=""), "is no record of a result, or one of an earlier version"),
-        (
-            lambda record: record.update(command_line="driveline 'x"),
-            "is no record of a result, or one of an earlier version",
+        *(
+            (lambda record, wrong=wrong: record.update(wrong), "is no record of a result, or one of an earlier version")
+            for wrong in (
+                {"files": ["x.csv"]},
+                {"folder": 7},
+                *({"command_line": words} for words in (5, "", "driveline 'x")),
+                {"fmus": ["x"]},
+            )
         ),
-        (lambda record: record.update(fmus=["x"]), "is no record of a result, or one of an earlier version"),
         (lambda record: record.update(command_line="driveline --help"), "makes no result of runs: driveline --help$"),
         (lambda record: record.update(command_line="python mine.py"), "made by another program, .*: python mine.py$"),
         (

@@ -34,20 +34,23 @@ Command = Callable[..., int]
 
 
 class Kind(NamedTuple):
-    """One of the commands that resume: what it is given, where its output goes, and its files."""
+    """One of the commands that resume: what it is given, where its output goes, its files, and what it prints."""
 
     name: str
     given: tuple[str, ...]
     output: str
     files: tuple[str, ...]
+    says: str
 
 
 PLANT = ("--plant", "TwoMassDriveline")
 OURS, ALL = ("--controller", "DampingController"), ("--controller", "DampingController", "--controller", "SpeedWashout")
 KINDS = (
-    Kind("faults", ("--cases", "4", "--seed", "2", *PLANT), "--output", ("faults.csv",)),
-    Kind("robustness", ("--cases", "2", *PLANT, *OURS), "--output", ("runs.csv", "draws.csv", "summary.csv")),
-    Kind("design", ("--evaluations", "6"), "--search", ("evaluations.csv", "gains.toml")),
+    Kind("faults", ("--cases", "4", "--seed", "2", *PLANT), "--output", ("faults.csv",), "clean"),
+    Kind(
+        "robustness", ("--cases", "2", *PLANT, *OURS), "--output", ("runs.csv", "draws.csv", "summary.csv"), "bounded"
+    ),
+    Kind("design", ("--evaluations", "6"), "--search", ("evaluations.csv", "gains.toml"), "start    1.000"),
 )
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
 
@@ -120,7 +123,7 @@ def test_a_campaign_that_was_stopped_ends_with_the_bytes_of_one_that_was_not(
     assert {name: (stopped / name).read_bytes() for name in kind.files} == expected
 
 
-@every_kind
+@pytest.mark.parametrize("kind", [KINDS[0], *(pytest.param(kind, marks=pytest.mark.slow) for kind in KINDS[1:])])
 def test_a_campaign_of_other_settings_is_not_continued_unless_it_is_to_be_replaced(
     command: Command, kind: Kind, tmp_path: Path, capsys: Capsys
 ) -> None:
@@ -135,7 +138,8 @@ def test_a_campaign_of_other_settings_is_not_continued_unless_it_is_to_be_replac
         assert command(*given, *other) == 2
         assert f"{kind.files[0]} is of another run (" in capsys.readouterr().err
     assert (tmp_path / kind.files[0]).read_bytes() == before
-    assert command(*given, "--seed", "2", "--replace") == 0
+    assert command(*given[:-1], "--seed", "2", "--replace") == 0
+    assert kind.says in capsys.readouterr().out
     after = (tmp_path / kind.files[0]).read_bytes()
     assert after.count(b"\n") == before.count(b"\n")
     assert (after == before) == (kind.name == "design"), "its only candidate is the start"

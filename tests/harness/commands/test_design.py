@@ -247,8 +247,8 @@ def test_a_car_without_a_controller_has_no_damped_mode_and_contradictory_shafts_
     car.write_text("C = 220.0\nk_s = 25800.0\n", encoding="utf-8")
     assert main(["car", str(car)]) == 2
     assert capsys.readouterr().err == (
-        f"driveline car: {car}: C = 220 N.m/rad and k_s = 25800 N.m/rad disagree: with that C would be 117.4 N.m/rad; "
-        "leave one of them out, and it follows\n"
+        f"driveline car: {car}, line 1: C = 220 N.m/rad and k_s = 25800 N.m/rad disagree: with that C would be "
+        "117.4 N.m/rad; leave one of them out, and it follows\n"
     )
 
 

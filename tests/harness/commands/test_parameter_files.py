@@ -6,6 +6,8 @@ from driveline.fmus.errors import ParameterFileError
 from driveline.harness.base.errors import DrivelineError, WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.settings import all_settings, settings
+from driveline.harness.loop import built_fmus
+from driveline.harness.loop.places import PLANTS
 from tests import ROOT
 from tests.foreign import SMALLEST_CONTROLLER, build_car, build_relay, tampered
 from tests.harness.commands import given as record
@@ -89,6 +91,11 @@ def test_gains_are_missed_where_a_controller_has_some_and_the_file_is_there(give
     assert "the gains of the default car" not in caplog.text
     given("--vehicle", str(tmp_path / "car.toml"))
     assert "the gains of the default car" in caplog.text
+    caplog.clear()
+    (tmp_path / "car.toml").write_text("# nothing yet\n", encoding="utf-8")
+    given("--vehicle", str(tmp_path / "car.toml"))
+    assert "car.toml has no parameter: the car is the default one" in caplog.text
+    assert "the gains" not in caplog.text
 
 
 def test_a_parameter_of_the_same_name_in_another_unit_is_refused_unless_it_is_mapped(given, tmp_path):
@@ -134,6 +141,14 @@ def test_of_several_controllers_a_value_and_a_mapping_are_for_those_that_have_th
     assert given["SmallestController"][1] == {"motor.seed": "seed"}
     with pytest.raises(WiringError, match=r"in SmallestController\.fmu nowhere does not exist"):
         parameters("--map", "controller.T_ref=nowhere")
+
+
+def test_what_several_loops_need_is_built_at_once(both_built, monkeypatch):
+    needed = []
+    monkeypatch.setattr(built_fmus, "BUILD", both_built)
+    monkeypatch.setattr(built_fmus, "_in_cache", lambda each: needed.append(each) or (both_built, []))
+    all_settings(record("compare", "--fmus", str(both_built)), (), ["DampingController"])
+    assert [set(PLANTS) <= set(each["native"]) for each in needed] == [True]
 
 
 @pytest.mark.slow

@@ -42,23 +42,14 @@ def test_what_the_loop_runs_without_is_said_once_a_command_and_never_with_quiet(
         warn_once.cache_clear()
         caplog.clear()
         assert main([*given, "--output", str(tmp_path / f"out{len(quiet)}"), *quiet]) == 0
-        said = [text for text in caplog.messages if text.endswith("the loop runs without")]
-        assert len(said) == len(set(said)) == (0 if quiet else 5)
+        said = [text for text in caplog.messages if "the loop runs without" in text]
+        assert len(said) == (0 if quiet else 1)
 
 
 def test_a_block_that_does_not_fit_gets_the_command_that_maps_it(blocks: dict[str, Path], capsys: Capsys) -> None:
     assert main(["simulate", "--controller", str(blocks["plant"])]) == 2
     told = f"`driveline map {blocks['plant']} --place controller` drafts which of its variables are meant, for --map"
     assert capsys.readouterr().err.splitlines()[-1] == told
-
-
-def test_a_page_refuses_what_has_no_source_before_anything_is_built(
-    blocks: dict[str, Path], tmp_path: Path, capsys: Capsys
-) -> None:
-    given = ["--plant", str(blocks["plant"]), "--fmus", str(tmp_path / "none"), "--output", str(tmp_path / "x.html")]
-    assert main(["explore", *given]) == 2
-    assert "a page has loops of FMUs that were built from Python by `driveline build`" in capsys.readouterr().err
-    assert not (tmp_path / "x.html").exists()
 
 
 @pytest.mark.slow

@@ -38,7 +38,7 @@ def drive(native, tmp_path):
     return start, temporary
 
 
-@pytest.mark.parametrize("command", slow(COMMANDS, but=["simulate", "compare"]))
+@pytest.mark.parametrize("command", slow(COMMANDS, but=["simulate"]))
 def test_a_stranger_that_exits_is_one_line(drive, tmp_path, command):
     start, temporary = drive
     does: Any = {"IN_DO_STEP": 'puts("hello"); if (time > 0.5) exit(0)'}

@@ -84,9 +84,13 @@ def torques_apart(one, other):
     return max(np.abs(one[name] - other[name]).max() for name in torques)
 
 
-@pytest.mark.parametrize("width", slow(WIDTHS, but=WIDTHS[:1]))
-@pytest.mark.parametrize("plant", slow(["TwoMassDriveline", "ValidationVehicle"], but=["ValidationVehicle"]))
-@pytest.mark.parametrize("manoeuvre", slow(["tipin15", "launch_brake"], but=["tipin15"]))
+@pytest.mark.parametrize(
+    ("width", "plant", "manoeuvre"),
+    [
+        *((width, "TwoMassDriveline", "tipin15") for width in WIDTHS[:1]),
+        *((width, "ValidationVehicle", "launch_brake") for width in WIDTHS),
+    ],
+)
 @pytest.mark.slow
 def test_they_are_those_of_single_runs(both_built, libraries, width, plant, manoeuvre):
     system = loop(plant, folder=both_built, build="native")

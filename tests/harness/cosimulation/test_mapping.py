@@ -101,7 +101,10 @@ def test_names_may_be_the_same_or_swapped_and_one_output_two_things(both_built, 
     ("mapping", "complaint"),
     [
         ({"plant.T_gear": "Shaft.ta"}, r"plant\.T_gear=Shaft\.ta: in .* does not exist; did you mean Shaft\.tau"),
-        ({"plnt.T_gear": "Shaft.tau"}, r"plnt\.T_gear=Shaft\.tau: there is no instance plnt; did you mean plant"),
+        (
+            {"plnt.T_gear": "Shaft.tau"},
+            "^plnt is no place of the loop, nor the name of an FMU in it; did you mean plant",
+        ),
         ({"plant.T_gear": "Rotor.n"}, r"plant\.T_gear=Rotor\.n: .* is in rpm, which does not convert into N\.m"),
         ({"plant.T_gear": "T_brake"}, r"plant\.T_gear: .* T_gear is of causality input; it must be output"),
         ({"plant.T_mot": "T_brake", "plant.T_brake": "T_brake"}, "T_brake is mapped to T_brake too; only an output"),

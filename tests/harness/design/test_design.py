@@ -128,12 +128,11 @@ def test_a_slower_motor_is_looked_ahead_further_as_far_as_the_controller_can(nam
 
 def test_a_softer_or_harder_car_has_another_character() -> None:
     """In the middle the gains are as designed; at both ends the factors are whole, half way their roots."""
-    middle = design()
-    assert design(character=0.5) == middle
-    for name, (sport, comfort) in FACTORS.items():
-        for character, factor in ((0.0, sport), (0.25, sqrt(sport)), (0.75, sqrt(comfort)), (1.0, comfort)):
-            assert design(character=character)[name] == pytest.approx(factor * middle[name])
-    assert {name for name, value in design(character=0.0).items() if value != middle[name]} == set(FACTORS)
+    middle, sport, soft, comfort = (design(character=character) for character in (0.5, 0.0, 0.75, 1.0))
+    for name, (least, most) in FACTORS.items():
+        for found, factor in ((sport, least), (soft, sqrt(most)), (comfort, most)):
+            assert found[name] == pytest.approx(factor * middle[name])
+    assert {name for name, value in sport.items() if value != middle[name]} == set(FACTORS)
 
 
 def test_a_stiffer_drive_train_is_given_back_its_torque_sooner() -> None:

@@ -1,6 +1,5 @@
 """Every block of the loop can be another one; what it need not have, it may lack."""
 
-import logging
 from dataclasses import replace
 from typing import Any
 
@@ -11,10 +10,12 @@ from driveline.fmus.catalogue import EVERY
 from driveline.harness.base.errors import WiringError
 from driveline.harness.cosimulation.experiment import Experiment
 from driveline.harness.cosimulation.interface import Interface
+from driveline.harness.cosimulation.limits import USUAL_LIMITS
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.wiring import fit
+from driveline.harness.loop.mapped_names import mappings, require_known
 from driveline.harness.loop.places import CONNECTIONS, NO_DAMPING, OFFERED, OPTIONAL, PLACES, PLANTS
-from driveline.harness.loop.settings import chosen_build, loop
+from driveline.harness.loop.settings import Settings, chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, simulate, start
 from tests.foreign import RELAY, build_relay, tampered
@@ -44,10 +45,9 @@ def usual(native):
 def test_a_file_takes_the_place_of_a_block(native, usual, tmp_path, place):
     ours = native / f"{PLACES[place][0]}.fmu"
     theirs = tampered(ours, tmp_path / "theirs.fmu", lambda xml: xml + "\n")
-    for path in (theirs, str(theirs)):
-        block: dict[str, Any] = {place: path}
-        assert loop(folder=native.parent, **block).instances[place] == theirs
-        np.testing.assert_array_equal(simulate(SHORT, folder=native.parent, **block), usual)
+    block: dict[str, Any] = {place: theirs}
+    assert loop(folder=native.parent, **block).instances[place] == theirs
+    np.testing.assert_array_equal(simulate(SHORT, folder=native.parent, **block), usual)
 
 
 @pytest.mark.parametrize(
@@ -84,9 +84,9 @@ def test_a_controller_need_not_use_every_signal(both_built, relay, caplog):
     np.testing.assert_array_equal(results["controller.T_ref"][1:], results["controller.T_driver"][:-1])
     assert "controller.enable" not in (results.dtype.names or ())
     assert results["plant.T_gear"][-1] > 50.0
-    noted = {record.getMessage().partition(":")[0] for record in caplog.records if record.levelno == logging.WARNING}
-    without_unit = {"Relay.fmu"}  # what is mapped
-    assert noted - without_unit == {name for name in OPTIONAL if name.startswith("controller.")}
+    (noted,) = (text for text in caplog.messages if "the loop runs without" in text)
+    lacking = ", ".join(name for name in OPTIONAL if name.startswith("controller."))
+    assert noted == f"Relay.fmu: the loop runs without {lacking}"
 
 
 def test_without_damping_none_stands_in_the_place_of_a_controller_that_is_always_on(native, native_builder, relay):
@@ -114,3 +114,22 @@ def test_what_is_not_optional_must_be_there_and_a_seed_need_not(built, relay, bo
     assert results["motor.T_mot"][-1] > 50.0
     with pytest.raises(WiringError, match="no parameter sed; did you mean seed"):
         simulate(SHORT, folder=both_built, motor=both_built / "MotorTorqueLoop.fmu", parameters={"motor.sed": 1})
+
+
+def test_a_table_named_as_the_file_of_an_fmu_is_for_it_alone() -> None:
+    given = {"mine.T_ref": "cmd", "other.T_ref": "out", "can.valid": "ok"}
+    files = ["x/mine.fmu", "other.fmu", "DampingController"]
+    found = mappings(given, ["TwoMassDriveline"], files, USUAL_LIMITS)
+    made = {key[1]: Settings(*key, mapping=each).mapping for key, each in found.items()}
+    assert made == {
+        "x/mine.fmu": {"can.valid": "ok", "controller.T_ref": "cmd"},
+        "other.fmu": {"can.valid": "ok", "controller.T_ref": "out"},
+        "DampingController": {"can.valid": "ok"},
+    }
+    both = Settings(controller=files[0], mapping={"controller.T_ref": "a", **given}).mapping
+    assert both == {**made[files[0]], "other.T_ref": "out"}
+    assert Settings("plant.fmu", "other/plant.fmu", mapping={"plant.v": "v"}).mapping == {"plant.v": "v"}
+    with pytest.raises(WiringError, match=r"^--map mine: controller and plant are both mine\.fmu; rename one, or name"):
+        Settings("mine.fmu", "x/mine.fmu", mapping=given)
+    with pytest.raises(WiringError, match=r"^other is no place of the loop, nor the name of an FMU in it; did you"):
+        require_known(both)

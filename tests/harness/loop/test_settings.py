@@ -6,11 +6,16 @@ from typing import Any
 
 import pytest
 
+from driveline.fmus.building.builds import build_fmus
 from driveline.harness.base.errors import WiringError
 from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.arguments import ARGUMENTS
-from driveline.harness.loop.places import PLACES
+from driveline.harness.loop.built_fmus import frequency_of_plant
+from driveline.harness.loop.given_parameters import built_with
+from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Changes, Settings, own_frequency, settings
+from tests import ROOT
+from tests.foreign import build_car
 
 
 def test_settings_are_given_as_a_record_a_plant_or_keyword_arguments_which_are_its_fields() -> None:
@@ -68,3 +73,18 @@ def test_the_frequency_of_a_car_is_that_of_its_two_masses_on_their_spring() -> N
     assert own_frequency(car) == pytest.approx(7.999, abs=5e-4)
     for name in car:
         assert own_frequency({key: value for key, value in car.items() if key != name}) is None
+
+
+def test_fmus_tell_the_frequency_of_the_car_that_they_were_built_with(
+    built: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    van = ROOT / "examples" / "cars" / "van.toml"
+    list(build_fmus(PLANTS, tmp_path, "python", vehicle=van))
+    usual = [Settings(plant, folder=built, build="python") for plant in PLANTS]
+    for before, given in zip(usual, built_with(usual, van, None, {}), strict=True):
+        assert frequency_of_plant(before) is None
+        assert frequency_of_plant(before.replace(folder=tmp_path)) == given.frequency
+    assert caplog.text == ""
+    theirs = usual[0].replace(plant=build_car(tmp_path / "theirs"))
+    assert frequency_of_plant(theirs) is None
+    assert "tells no C, J_1 and J_2: the band of the metrics is that of the default car" in caplog.text

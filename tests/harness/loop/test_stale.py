@@ -9,7 +9,7 @@ import pytest
 from driveline.fmus import origin
 from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
-from driveline.harness.loop import built_fmus, fmu_cache, stale_fmus
+from driveline.harness.loop import built_fmus, fmu_cache
 from driveline.harness.loop.places import BUILDS, PLANTS
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -41,7 +41,7 @@ def test_stale_fmus_of_a_folder_are_named_and_not_built(stale, tmp_path, caplog)
 def test_a_stale_file_is_named(both_built, stale, tmp_path, caplog, monkeypatch) -> None:
     monkeypatch.undo()
     plant = tmp_path / "stale" / "TwoMassDriveline.fmu"
-    monkeypatch.setattr(stale_fmus, "is_stale", lambda path: path == plant)
+    monkeypatch.setattr(built_fmus, "is_stale", lambda path: path == plant)
     assert main([*RUN, "--fmus", str(both_built), "--plant", str(plant), "--output", str(tmp_path / "results")]) == 0
     assert f"stale, not made from the sources that are installed: {plant}" in caplog.text
 

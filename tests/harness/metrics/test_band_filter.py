@@ -113,8 +113,20 @@ def test_there_is_no_response_where_the_input_has_nothing_as_a_constant_one() ->
     f, answer = frequency_response(np.sin(2.0 * np.pi * 2.0 * t), np.sin(2.0 * np.pi * 2.0 * t), T_S)
     assert np.abs(answer[np.argmin(np.abs(f - 2.0))]) == pytest.approx(1.0)
     assert np.isnan(answer[f > 10.0]).all()
-    _, answer = frequency_response(np.full(1000, 5.0), np.arange(1000.0), T_S)
+    with np.errstate(all="raise"):
+        _, answer = frequency_response(np.full(1000, 5.0), np.arange(1000.0), T_S)
     assert np.isnan(answer).all()
+
+
+@pytest.mark.parametrize(("share", "told"), [(1.01e-3, 20), (0.99e-3, 10)])
+def test_spectra_are_averaged_over_half_a_hertz_and_a_thousandth_of_the_power_is_nothing(share, told) -> None:
+    """Ten of 10 499 frequencies about each of two, however small the input is."""
+    one, other = (np.cos(2.0 * np.pi * k * np.arange(10_499) / 10_499) for k in (100, 300))
+    u = 1e-6 * np.append(0.0, np.cumsum(one + np.sqrt(share) * other))
+    _, answer = frequency_response(u, 3.0 * u, T_S)
+    assert answer[np.isfinite(answer)] == pytest.approx([3.0] * told)
+    _, answer = frequency_response(u[:100], 3.0 * u[:100], T_S)
+    assert answer[np.isfinite(answer)] == pytest.approx(3.0), "shorter than that, each by itself"
 
 
 def test_the_amplitude_of_a_sine_on_a_drift_is_its_own() -> None:
@@ -122,6 +134,7 @@ def test_the_amplitude_of_a_sine_on_a_drift_is_its_own() -> None:
     f, amplitude = amplitude_spectrum(3.0 * np.sin(2.0 * np.pi * 8.0 * t) + 20.0 * t, T_S)
     assert amplitude.max() == pytest.approx(3.0, rel=0.01)
     assert f[amplitude.argmax()] == pytest.approx(8.0, abs=0.05)
+    assert amplitude_spectrum(20.0 * t, T_S)[1] == pytest.approx(0.0, abs=1e-9)
 
 
 def results(true: list[float], estimated: list[float], phi_hat: float = 0.1) -> np.ndarray:

@@ -46,6 +46,7 @@ def test_a_frame_has_a_row_a_run_with_units_and_fields_as_levels_of_the_index() 
     found = frame({Case(k_d, phi_B): RIDE for k_d in (1.0, 2.0) for phi_B in (0.1, 0.2, 0.3)})
     assert found.index.names == ["k_d", "phi_B"]
     assert found["jerk_rms"].unstack("phi_B").shape == (2, 3)
+    assert frame({Case(1.0, 0.1): RIDE}).index.names == ["k_d", "phi_B"]
     with pytest.raises(DrivelineError, match="there are no runs"):
         frame({})
 
@@ -64,8 +65,7 @@ def test_a_metric_has_the_name_of_its_field_its_value_and_a_heading_in_one_line(
 
 
 @pytest.mark.parametrize(
-    ("unit", "key"),
-    [("s", "x_s"), ("1", "x_1"), ("rad/s", "x_rad_per_s"), ("m/s3", "x_m_per_s3"), ("N.m", "x_N_m")],
+    ("unit", "key"), [("s", "x_s"), ("1", "x_1"), ("rad/s", "x_rad_per_s"), ("m/s3", "x_m_per_s3"), ("N.m", "x_N_m")]
 )
 def test_the_key_ends_in_the_unit_in_words(unit, key):
     assert Metric(unit, "", name="x").key == key

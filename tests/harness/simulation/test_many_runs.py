@@ -220,26 +220,6 @@ def test_a_case_whose_process_was_lost_is_run_once_more_and_all_are_answered(tmp
     assert times[at] == max(times) == 2
 
 
-def ending_at_5(folder):
-    """A function whose case 5 ends its process; each case that it is given adds a letter to a file of its own."""
-
-    def run(case):
-        with (folder / f"{case}").open("a") as file:
-            file.write("x")
-        return os._exit(3) if case == 5 else case
-
-    return run
-
-
-@pytest.mark.slow
-def test_what_comes_before_a_case_that_ends_its_process_twice_is_answered(tmp_path):
-    known = {}
-    with pytest.raises(SimulationError, match="a process crashed in case 5, and again"):
-        run_many(ending_at_5(tmp_path), range(10), workers=2, known=known)
-    assert known == {case: case for case in range(5)}
-    assert (tmp_path / "5").stat().st_size == 2
-
-
 def test_what_is_known_is_not_asked_again_and_what_is_answered_is_known():
     asked, known = [], {3: "known", 9: "of no use here"}
 
@@ -290,11 +270,18 @@ def test_an_error_in_a_batch_comes_after_the_answers_before_it(workers):
 
 
 @pytest.mark.slow
-def test_a_case_that_ends_its_process_is_found_in_its_batch(tmp_path):
+@pytest.mark.parametrize("batch", [1, 4])
+def test_what_comes_before_a_case_that_ends_its_process_twice_is_answered(tmp_path, batch):
+    def run(case):
+        with (tmp_path / f"{case}").open("a") as file:
+            file.write("x")
+        return os._exit(3) if case == 5 else case
+
     known = {}
     with pytest.raises(SimulationError, match="a process crashed in case 5, and again"):
-        run_many(ending_at_5(tmp_path), range(12), workers=2, known=known, batch=4)
+        run_many(run, range(12), workers=2, known=known, batch=batch)
     assert known == {case: case for case in range(5)}
+    assert batch > 1 or (tmp_path / "5").stat().st_size == 2
 
 
 def test_a_process_that_ends_beside_an_error_is_not_that_of_the_case_with_the_error(tmp_path):

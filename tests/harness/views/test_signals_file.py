@@ -52,7 +52,7 @@ def test_what_is_written_is_read_again_with_its_times_and_units(tmp_path: Path, 
 
 
 @pytest.mark.parametrize("name", FORMATS)
-@pytest.mark.parametrize("rows", [100, 167, 501])
+@pytest.mark.parametrize("rows", [100, 167])
 def test_what_is_written_piece_by_piece_is_read_again(
     tmp_path: Path, name: str, rows: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

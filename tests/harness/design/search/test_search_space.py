@@ -3,14 +3,17 @@
 from dataclasses import fields
 from typing import Any
 
+import numpy as np
 import pytest
 
 from driveline.fmus.building.parameter_files import of_plants, read_vehicle
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.design.design import AUTHORITY, design, literal_observer
 from driveline.harness.design.design_weights import records
-from driveline.harness.design.search.pareto_figure import MARGIN, _around, _symbol
-from driveline.harness.design.search.search_space import Searched, space
+from driveline.harness.design.search.controller_cost import Costs
+from driveline.harness.design.search.parameter_search import Evaluated
+from driveline.harness.design.search.pareto_figure import MARGIN, front_drawing
+from driveline.harness.design.search.search_space import Searched, Space, space
 from driveline.harness.design.search.tuning_runs import (
     AT_CORNERS,
     HELD_OUT_MANOEUVRES,
@@ -22,6 +25,7 @@ from driveline.harness.design.uncertainty_box import BOX, NOMINAL
 from driveline.harness.loop.places import PLACES, PLANTS, T_S
 from driveline.harness.manoeuvres.catalogue import COMPARED, USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
+from driveline.harness.views.panels import Curve
 from driveline.models.block.declaration import Real, variables
 from tests import ROOT
 
@@ -123,23 +127,14 @@ def test_no_run_has_a_held_out_manoeuvre_or_seed_or_a_draw_from_inside_the_box()
         assert len(at) == len(set(at)) == 6 * len(AT_CORNERS)
 
 
-@pytest.mark.parametrize(
-    ("name", "shown"),
-    [
-        ("k_d", "$k_{d}$"),
-        ("omega_w", r"$\omega_{w}$"),
-        ("T_take_max", "$T_{take_max}$"),
-        ("d", "$d$"),
-        ("landing_share", "landing_share"),
-    ],
-)
-def test_a_parameter_is_a_symbol_with_its_index_and_a_word_stays_a_word(name: str, shown: str) -> None:
-    assert _symbol(name) == shown
-
-
-@pytest.mark.parametrize(
-    ("values", "limits"),
-    [([1.0, 3.0], (1.0 - 2.0 * MARGIN, 3.0 + 2.0 * MARGIN)), ([1.0], (0.98, 1.02)), ([1.0, 1.01], (0.98, 1.03))],
-)
-def test_points_have_a_margin_around_them_even_where_there_is_only_one(values, limits) -> None:
-    assert _around(values) == pytest.approx(limits)
+def test_the_figure_shows_every_parameter_that_is_searched_in_a_style_of_its_own() -> None:
+    searched = tuple(Searched(f"k_{k}", 1.0 + k, 0.1, 100.0) for k in range(16))
+    visited = [Evaluated(tuple(f * each.start for each in searched), Costs(1.0, f, 2.0 - f)) for f in (1.0, 0.8, 1.2)]
+    drawn = front_drawing(visited, Space(searched, {}), {"comfort": 1.0}, "a search")
+    curves = [part for part in drawn.rows[1][0].parts if isinstance(part, Curve)]
+    assert [curve.label for curve in curves] == [each.name for each in searched]
+    assert len({(curve.color, curve.dashes) for curve in curves}) == 16
+    assert all(set(np.round(curve.y, 9)) <= {0.8, 1.0, 1.2} for curve in curves)
+    (costs,) = drawn.rows[0]
+    assert costs.x
+    assert costs.x.window == pytest.approx((0.8 - 0.2 * MARGIN, 1.0 + 0.2 * MARGIN)), "from the start to what is marked"

@@ -17,7 +17,7 @@ from driveline.harness.loop.settings import Settings
 from driveline.harness.simulation.case_archive import CaseArchive
 
 OURS = space("DampingController", {})
-COUNT = 12
+COUNT = 5
 
 
 def searched(
@@ -26,18 +26,11 @@ def searched(
     return tune(evaluation, OURS, count, seed, folder, **{"workers": 1, **settings})  # type: ignore[arg-type]
 
 
-@pytest.mark.slow
-def test_a_search_is_the_same_on_any_number_of_cores(evaluation: CostEvaluation, tmp_path: Path) -> None:
-    assert searched(evaluation, tmp_path / "1") == searched(evaluation, tmp_path / "2", workers=2)
-    written = [(tmp_path / n / EVALUATIONS).read_bytes() for n in ("1", "2")]
-    assert written[0] == written[1]
-    assert sorted(path.name for path in (tmp_path / "1").iterdir()) == [EVALUATIONS, RECORD]
-
-
 def test_what_is_known_is_not_run_again_and_the_record_tells_what_the_costs_depend_on(
     evaluation, tmp_path, monkeypatch
 ) -> None:
     searched(evaluation, tmp_path, count=1)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [EVALUATIONS, RECORD]
     run = json.loads((tmp_path / RECORD).read_text())["run"]
     assert run["controller"] == "DampingController"
     assert run["searched"]["k_d"] == [0.3, 2.58, 10.0]

@@ -20,7 +20,8 @@ from driveline.harness.cosimulation.limits import Limits
 from driveline.harness.cosimulation.unpacked_fmu import unpacked as opened
 from driveline.harness.exchange.compliance.behaviour_rules import BEHAVIOUR_RULES
 from driveline.harness.exchange.compliance.check import check
-from driveline.harness.exchange.compliance.claim_rules import CLAIM_RULES, STEPPING_CLAIM_RULES
+from driveline.harness.exchange.compliance.claim_rules import CLAIM_RULES, EXCHANGE_CLAIM_RULES, STEPPING_CLAIM_RULES
+from driveline.harness.exchange.compliance.exchange_rules import EXCHANGE_RULES
 from driveline.harness.exchange.compliance.junit import junit
 from driveline.harness.exchange.compliance.probe import initialized
 from driveline.harness.exchange.compliance.rule import Rule, Severity
@@ -43,7 +44,7 @@ def findings(path):
 
 def file_findings(path):
     """Those that need no run of the FMU."""
-    verdicts = check(path, ignored=[rule.name for rule in BEHAVIOUR_RULES])
+    verdicts = check(path, ignored=STEPPED | {rule.name for rule in (*EXCHANGE_RULES, *EXCHANGE_CLAIM_RULES)})
     return "\n".join(problem for verdict in verdicts for problem in verdict.problems)
 
 

@@ -44,8 +44,10 @@ def emulators(folder: Path) -> set[int]:
     return set(map(int, subprocess.run(command, capture_output=True, text=True, check=False).stdout.split()))
 
 
-@pytest.mark.parametrize("scheme", Scheme)
-@pytest.mark.parametrize("plant", ["TwoMassDriveline", "ValidationVehicle"])
+@pytest.mark.parametrize(
+    ("scheme", "plant"),
+    [*((scheme, "TwoMassDriveline") for scheme in Scheme), (Scheme.PROPAGATED, "ValidationVehicle")],
+)
 def test_the_loop_gives_what_the_same_c_gives_off_line(scheme, plant, on_target, target, both_built) -> None:
     results = at_samples(simulated(on_target, both_built, plant=plant, scheme=scheme))
     sources = {name: name for name in signals(TIPIN)} | {to: source for source, to, _ in CONNECTIONS}
