@@ -9,7 +9,7 @@ from driveline.fmus.description.documentation import tables, timing
 from driveline.fmus.file_limits import LIMITS
 from driveline.fmus.fmu import Fmu
 from driveline.harness.exchange.compliance import check
-from driveline.harness.identification import diagnostics
+from driveline.harness.identification import car_file, diagnostics, estimator, identify, noise, step, torque_loop
 from driveline.harness.identification.priors import PRIORS
 from driveline.harness.loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS, PARAMETERS, PLACES, ROAD_LOAD
 from driveline.harness.recordings import (
@@ -20,6 +20,7 @@ from driveline.harness.recordings import (
     plausibility,
     relations,
     signal_checks,
+    time_base,
 )
 from driveline.harness.recordings.missing_values import FILLED
 from driveline.harness.recordings.quantities import BY_UNIT, QUANTITIES, aliases
@@ -124,12 +125,14 @@ def recording_checks() -> str:
 
 def recording_thresholds() -> str:
     """The numbers that decide in them, each with the measurement that it comes from."""
-    return _thresholds(missing_values, channel_rules, force_balance, plausibility, relations, signal_checks, alignment)
+    return _thresholds(
+        missing_values, time_base, channel_rules, force_balance, plausibility, relations, signal_checks, alignment
+    )
 
 
 def identification_thresholds() -> str:
-    """The numbers from which on an identification warns."""
-    return _thresholds(diagnostics)
+    """The numbers that decide in an identification."""
+    return _thresholds(diagnostics, identify, estimator, torque_loop, noise, step, car_file)
 
 
 def identification_priors() -> str:
