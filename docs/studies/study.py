@@ -116,6 +116,7 @@ STUDIES = (
     "calibration",
     "vehicle_model",
     "one_car",
+    "unseen_cars",
     "tuning",
     "analysis",
     "coupling",

@@ -1,0 +1,175 @@
+"""Cars that no search has seen: drawn, designed for by `driveline design` alone, and driven on both plants.
+
+A motor that gives each car 2 to 4 m/s2 drives it through the steps of the catalogue, in proportion to what it can do.
+Beside ours stand the same gains without the shape of the demand, and the washout of the motor speed scaled to the car:
+its frequencies as the drive train's, its damping as J_1 times that.
+"""
+
+from collections.abc import Iterable, Mapping
+from itertools import product
+from math import pi
+from random import Random
+from typing import NamedTuple
+
+import numpy as np
+
+from driveline.harness.design.design import design
+from driveline.harness.design.loop_parameters import loop_parameters
+from driveline.harness.loop.places import PLACES, PLANTS
+from driveline.harness.loop.settings import Settings
+from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from driveline.harness.manoeuvres.for_car import for_car
+from driveline.harness.metrics.evaluate import evaluate
+from driveline.harness.metrics.run_metrics import Metrics
+from driveline.harness.simulation.many_runs import run_many
+from driveline.harness.simulation.simulate import simulate
+from driveline.models.comparators.speed_washout import WashoutParameters
+from driveline.models.physics.vehicle import CAR
+
+from .design_trials import mean
+from .one_car import drawn, frequencies
+from .study import Cell, Column, Measured, Study, Table, cell
+
+CARS, SEED = 12, 40
+NOISE = (301, 302, 303)
+STEPS = ("tipin15", "tipin50", "tipin0", "tipout")
+
+OURS, WASHOUT = PLACES["controller"][0], "SpeedWashout"
+NONE, UNSHAPED = "no damping", "without the shape"
+CHOICES = (NONE, OURS, UNSHAPED, WASHOUT)
+
+Car = Mapping[str, float]
+
+
+class Trial(NamedTuple):
+    """A car on a plant, with one of CHOICES, in a manoeuvre."""
+
+    car: str
+    plant: str
+    choice: str
+    manoeuvre: str
+
+
+def drawn_cars() -> dict[str, dict[str, float]]:
+    """By name, with the largest torque of the motor."""
+    random, found = Random(SEED), {}
+    for k in range(1, CARS + 1):
+        car = drawn(random)
+        found[f"car {k}"] = {**car, "T_max": random.uniform(2.0, 4.0) * car["m"] * car["r"] / car["i"]}
+    return found
+
+
+UNSEEN = drawn_cars()
+
+
+def gains(car: Car, choice: str) -> Car:
+    """Of the controller that is chosen."""
+    if choice != WASHOUT:
+        return design(car) | (dict.fromkeys(("shape_1", "shape_2"), 0.0) if choice == UNSHAPED else {})
+    usual, own = (2.0 * pi * frequencies(each).design for each in ({}, car))
+    of = WashoutParameters()
+    inertia = car["J_1"] / CAR.J_1
+    return {"k_v": of.k_v * inertia * own / usual, "omega_v": of.omega_v * own / usual}
+
+
+def measured(trial: Trial) -> Metrics:
+    """Means over the noise of three seeds."""
+    car = UNSEEN[trial.car]
+    controller = WASHOUT if trial.choice == WASHOUT else OURS
+    given = loop_parameters({**car, **gains(car, trial.choice)}, trial.plant, controller)
+    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], car["T_max"])
+    its = Settings(plant=trial.plant, controller=controller, control=trial.choice != NONE, parameters=given)
+    return mean([evaluate(simulate(manoeuvre, its, seed=seed), manoeuvre) for seed in NOISE])
+
+
+class Shown(NamedTuple):
+    """Of a car on a plant with one of CHOICES: means over the steps.
+
+    Attributes:
+        overshoot: in %.
+        withheld, delay: in ms; the delay to 90 % over that without damping.
+        jerk: rms up to 50 Hz over that without damping, 1.
+    """
+
+    overshoot: float
+    withheld: float
+    delay: float
+    jerk: float
+
+
+COLUMNS = (
+    Column("overshoot", "%", 1),
+    Column("withheld", "ms", 1),
+    Column("90 % over none", "ms", 0),
+    Column("jerk", "", 2),
+)
+
+Found = Mapping[tuple[str, str, str], Shown]
+"""By car, plant and choice."""
+
+
+def shown(names: Iterable[str]) -> dict[tuple[str, str, str], Shown]:
+    """Of cars by their names."""
+    todo = [Trial(*each) for each in product(names, PLANTS, CHOICES, STEPS)]
+    of = dict(zip(todo, run_many(measured, todo, label="unseen cars"), strict=True))
+    found: dict[tuple[str, str, str], Shown] = {}
+    for name, plant, choice in dict.fromkeys(trial[:3] for trial in todo):
+        its = [of[Trial(name, plant, choice, manoeuvre)] for manoeuvre in STEPS]
+        off = [of[Trial(name, plant, NONE, manoeuvre)] for manoeuvre in STEPS]
+        found[name, plant, choice] = Shown(
+            overshoot=1e2 * average(each.overshoot for each in its),
+            withheld=1e3 * average(each.withheld_time for each in its),
+            delay=1e3 * average(a.response_delay - b.response_delay for a, b in zip(its, off, strict=True)),
+            jerk=average(a.jerk_rms_to_50_Hz / b.jerk_rms_to_50_Hz for a, b in zip(its, off, strict=True)),
+        )
+    return found
+
+
+def average(values: Iterable[float]) -> float:
+    return float(np.mean(list(values)))
+
+
+def cars_table(found: Found) -> Table:
+    rows = {", ".join(key): tuple(map(cell, each)) for key, each in found.items()}
+    return Table("car, plant, controller", COLUMNS, rows)
+
+
+def means_table(found: Found) -> Table:
+    """Over the cars, and the worst overshoot of one."""
+    columns = (Column("worst overshoot", "%", 1), *COLUMNS)
+    rows: dict[str, tuple[Cell, ...]] = {}
+    for plant, choice in product(PLANTS, CHOICES):
+        of = [each for key, each in found.items() if key[1:] == (plant, choice)]
+        rows[f"{plant}, {choice}"] = (max(each.overshoot for each in of), *map(average, zip(*of, strict=True)))
+    return Table("plant, controller", columns, rows)
+
+
+DRAWN = ("m", "r", "i", "J_1", "J_2", "C", "phi_B", "c_slip", "T_max")
+
+
+def drawn_table() -> Table:
+    """The cars, in the units of a vehicle file, and the frequency of their drive trains in the design model."""
+    rows = {name: (frequencies(car).design, *(car[each] for each in DRAWN)) for name, car in UNSEEN.items()}
+    return Table("car", (Column("drive train", "Hz", 1), *map(Column, DRAWN)), rows)
+
+
+def measure() -> Measured:
+    found = shown(UNSEEN)
+    return Measured({"means": means_table(found), "cars": cars_table(found), "drawn": drawn_table()})
+
+
+SENTINEL = "car 1"
+
+
+def again() -> dict[str, Table]:
+    return {"cars": cars_table(shown([SENTINEL]))}
+
+
+STUDY = Study(
+    "what the damping is worth on cars that no search has seen",
+    measure,
+    again,
+    {"cars": [", ".join((SENTINEL, *each)) for each in product(PLANTS, CHOICES)]},
+    (SEED, *NOISE),
+    seconds=60,
+)
