@@ -2,7 +2,7 @@
 
 A motor that gives each car 2 to 4 m/s2 drives it through the steps of the catalogue, in proportion to what it can do.
 Beside ours stand the same gains without the shape of the demand, and the washout of the motor speed scaled to the car:
-its frequencies as the drive train's, its damping as J_1 times that.
+its frequencies as the drive train's, its damping as J_1 times that, with the authority that ours has.
 """
 
 from collections.abc import Iterable, Mapping
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from driveline.harness.design.design import design
+from driveline.harness.design.design import AUTHORITY, design
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
@@ -64,12 +64,14 @@ UNSEEN = drawn_cars()
 
 def gains(car: Car, choice: str) -> Car:
     """Of the controller that is chosen."""
+    designed = design(car)
     if choice != WASHOUT:
-        return design(car) | (dict.fromkeys(("shape_1", "shape_2"), 0.0) if choice == UNSHAPED else {})
+        return designed | (dict.fromkeys(("shape_1", "shape_2"), 0.0) if choice == UNSHAPED else {})
     usual, own = (2.0 * pi * frequencies(each).design for each in ({}, car))
     of = WashoutParameters()
     inertia = car["J_1"] / CAR.J_1
-    return {"k_v": of.k_v * inertia * own / usual, "omega_v": of.omega_v * own / usual}
+    scaled = {"k_v": of.k_v * inertia * own / usual, "omega_v": of.omega_v * own / usual}
+    return scaled | {name: designed[name] for name in AUTHORITY}
 
 
 def measured(trial: Trial) -> Metrics:
