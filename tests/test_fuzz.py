@@ -10,7 +10,7 @@ from tests.skipping import skipped_if_impossible
 from tests.slow import slow
 
 
-@pytest.mark.parametrize("name", slow(TARGETS, but=("recordings", "swollen", "parameter_files")))
+@pytest.mark.parametrize("name", slow(TARGETS, but=("recordings", "parameter_files")))
 def test_odd_input_is_answered_as_promised(name: str, unpacked: Path) -> None:
     target, faults = TARGETS[name], []
     with skipped_if_impossible():
