@@ -14,7 +14,7 @@ from fmpy.model_description import ModelDescription
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.native.compiler import host_compiler
 from driveline.models.block.types import SampledBlock
-from tests.fmus.legal_hosts import HOSTS, LASTS, LONG, LONG_ELSE, LONG_IN_PYTHON
+from tests.fmus.legal_hosts import HOSTS, LASTS, LONG, LONG_IN_PYTHON, LONGER
 from tests.fmus.libpython import with_libpython
 from tests.fuzz.calls import as_fmi2
 from tests.together import together
@@ -82,7 +82,8 @@ def test_every_legal_host_gets_the_numbers_of_a_plain_one(
         each.chmod(0o555)
     in_python = build == "built"
     environment = with_libpython() if in_python else {}
-    lasts = f"{LASTS}={LONG_IN_PYTHON if in_python else LONG.get(name, LONG_ELSE) if build == 'native' else LONG_ELSE}"
+    longest = LONG_IN_PYTHON if in_python else LONGER.get(name, LONG) if build == "native" else LONG
+    lasts = f"{LASTS}={longest}"
 
     @cache
     def run(options: tuple[str, ...], folder: Path = unpacked, *, has_resources: bool = True) -> np.ndarray:
