@@ -1,6 +1,6 @@
 """What a page of `driveline explore` has in it, and the page."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib.metadata import version
 from itertools import cycle
 from math import inf
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...fmus.building.one_car import with_estimates
+from ...fmus.building.one_car import DEFAULT_CAR, with_estimates
 from ..base.atomic_files import complete
 from ..base.errors import DrivelineError
 from ..base.parameter_words import FORMS, WORDS
@@ -80,12 +80,12 @@ def content(
         DrivelineError: there is no module of the loops, a manoeuvre has the name of the recording, or the plant cannot
             follow it.
     """
-    car = with_estimates(of_car or {})
     if recording is not None and recording.name in manoeuvres:
         raise DrivelineError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
     if mapped := next((each for each in given.values() if each.mapping), None):
         raise DrivelineError(f"--map {'='.join(next(iter(mapped.mapping.items())))}: a page has the names of the loop")
     fits = {key: fit(loop(settings)) for key, settings in given.items()}
+    car = with_estimates(of_car or _built_for(fits.values()))
     plants, controllers = (list(dict.fromkeys(key[k] for key in given)) for k in (0, 1))
     loops = loops_of({named(*key): fitted for key, fitted in fits.items()}, _are_ours(given))
     first = [fits[plant, controllers[0]] for plant in plants]
@@ -127,6 +127,13 @@ def content(
         ],
         "files": {"car": car, "gains": dict(gains or {})},
     }
+
+
+def _built_for(fits: Iterable[Fit]) -> dict[str, float]:
+    """Entries of a vehicle file for the car that the plants were built for, where it is not the default one."""
+    variables = (variable for each in fits for variable in each.interfaces["plant"].variables.values())
+    starts = {v.name: float(v.start) for v in variables if v.name in DEFAULT_CAR and v.type == "Real" and v.start}
+    return {name: start for name, start in starts.items() if start != DEFAULT_CAR[name]}
 
 
 def _by_hand(share: float) -> dict[str, Any]:

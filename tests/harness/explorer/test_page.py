@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
 from driveline.harness.commands import explore
 from driveline.harness.commands.cli import main
@@ -97,6 +98,17 @@ def test_the_metrics_take_the_band_of_the_car(data: dict[str, Any], native: Path
         expected = evaluate(simulate(MANOEUVRES["tipin15"], given), MANOEUVRES["tipin15"])
         for name in ("gear_torque_rms", "jerk_rms"):
             assert answer["worth"][name] == pytest.approx(getattr(expected, name), rel=1e-5), (plant, file, name)
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_the_sliders_of_fmus_built_for_a_car_begin_at_that_car(plant: str, tmp_path: Path) -> None:
+    loops()
+    vehicle = ROOT / "examples" / "cars" / "van.toml"
+    list(build_fmus([plant, "MotorTorqueLoop", "WheelSpeedCan", OURS], tmp_path, "native", vehicle=vehicle))
+    page, van = content({(plant, OURS): settings(plant, folder=tmp_path, build="native")}), read_vehicle(vehicle)
+    of_plant = van.keys() & page["loops"]["fmus"][plant]["parameters"].keys()
+    assert {name: page["files"]["car"].get(name) for name in of_plant} == {name: van[name] for name in of_plant}
+    assert of_plant > {"m", "r", "i", "phi_B", "c_slip"}
 
 
 def test_what_cannot_be_is_refused_and_what_is_the_same_is_not_run_again(data: dict[str, Any], tmp_path: Path) -> None:
