@@ -64,11 +64,13 @@ def test_before_and_after_and_all_other_signals_are_as_they_were_sent(kind, sign
         assert (got == right).all(), name
 
 
-@pytest.mark.parametrize("signal", FIELD)
-def test_a_late_signal_is_what_was_sent_so_long_before(signal):
-    """A message is late as a whole."""
+@pytest.mark.parametrize(
+    ("signal", "rest"), [*((each, 0.0) for each in FIELD), (faults.MOTOR_SPEED, -0.49), (faults.MOTOR_SPEED, 0.49)]
+)
+def test_a_late_signal_is_what_was_sent_so_long_before(signal, rest):
+    """A message is late as a whole; a time between two samples counts as the nearer one."""
     delay = 8
-    out, true = passed(**fault(faults.LATE, signal, size=delay * T_S))
+    out, true = passed(**fault(faults.LATE, signal, size=(delay + rest) * T_S))
     before = slice(NOW.start - delay, NOW.stop - delay)
     for name in (FIELD[signal], "counter") if signal == faults.WHEEL_SPEED else (FIELD[signal],):
         assert (getattr(out, name)[NOW] == getattr(true, name)[before]).all()
