@@ -14,10 +14,8 @@ PART = r"""(?:[\w-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')[ \t]*\.[ \t]*"""
 TOO_DEEP = re.compile(rf"(?<![\w-])(?:{PART}){{{DEEPEST_TOML}}}", re.ASCII)
 TOO_LONG = re.compile(rf"\b[0-9](?:[xob]?[0-9A-Fa-f_]){{{MOST_DIGITS}}}", re.ASCII)
 
-UNQUOTED = re.compile(
-    r"^[ \t]*([\w-]+)[ \t]*=[ \t]*([+-]?\d[\d.eE+-]*[ \t]*[A-Za-z°%µ:][\w°%/.^*· -]{0,20})(?=\s*?(?:#|$))", re.MULTILINE
-)
-"""A number with a unit, as no TOML has it."""
+UNQUOTED = re.compile(r"\s*([\w-]+)\s*=\s*([+-]?\d[\d.eE+-]*\s*[A-Za-z°%µ:][\w°%/.^*· -]{0,20})(?=\s*(?:#|$))")
+"""A line with a number and a unit, as no TOML has it."""
 
 TEXT = r'''"""(?:[^\\]|\\.)*?"""|\'\'\'.*?\'\'\'|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|#[^\n]*'''
 BRACKET = re.compile(rf"{TEXT}|(?P<opens>[\[{{])|(?P<closes>[\]}}])", re.DOTALL)
@@ -48,11 +46,9 @@ def toml_entries(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except ValueError as error:
-        found = UNQUOTED.search(text)
-        line = text.count("\n", 0, found.start(1)) + 1 if found else 0
-        quotes = (
-            f'; line {line}: a number with a unit stands in quotes, {found[1]} = "{found[2].strip()}"' if found else ""
-        )
+        named = re.search(r"at line (\d+)", str(error))
+        found = UNQUOTED.match(text.split("\n")[int(named[1]) - 1]) if named else None
+        quotes = f'; a number with a unit stands in quotes, {found[1]} = "{found[2].strip()}"' if found else ""
         raise ValueError(f"not TOML: {error}{quotes}") from error
 
 

@@ -10,7 +10,7 @@ import pytest
 
 def together(names: str, cases: Iterable[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Like `pytest.mark.parametrize`, but the cases run one after the other in one test. Fixtures are made once for
-    all of them; each has a `tmp_path` of its own.
+    all of them, so what `monkeypatch` sets stays for the next; each case has a `tmp_path` of its own.
 
     Args:
         names: of the arguments that a case gives, with commas between them.

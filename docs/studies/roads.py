@@ -256,7 +256,7 @@ def by_group(runs: Sequence[Run], found: Sequence[Ratios]) -> dict[str, list[tup
 
 
 DRIFTS = (0.55, 0.7)
-"""Of `slip_drift`, above what it is: a motor that is late is no slip yet."""
+"""Values of `slip_drift` above the default, at which a motor that is late is not taken for slip."""
 
 CONTROLLERS = (OURS, *(name for name in COMPARATORS if name != "NoDamping"))
 

@@ -89,8 +89,9 @@ class Shown(NamedTuple):
 
     Attributes:
         overshoot: in %.
-        withheld, delay: in ms; the delay to 90 % over that without damping.
-        jerk: rms up to 50 Hz over that without damping, 1.
+        withheld: in ms.
+        delay: by which 90 % are reached later than without damping, in ms.
+        jerk: ratio of its rms up to 50 Hz to that without damping.
     """
 
     overshoot: float
@@ -102,8 +103,8 @@ class Shown(NamedTuple):
 COLUMNS = (
     Column("overshoot", "%", 1),
     Column("withheld", "ms", 1),
-    Column("90 % over none", "ms", 0),
-    Column("jerk", "", 2),
+    Column("90 % later", "ms", 0),
+    Column("jerk ratio", "", 2),
 )
 
 Found = Mapping[tuple[str, str, str], Shown]

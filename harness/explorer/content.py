@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...fmus.building.one_car import DEFAULT_CAR, with_estimates
+from ...fmus.written_numbers import REAL
 from ..base.atomic_files import complete
 from ..base.errors import DrivelineError
 from ..base.parameter_words import FORMS, WORDS
@@ -109,7 +110,7 @@ def content(
         "comfort": COMFORT,
         "follow": following(car, frequency_of_plant(next(iter(given.values())))),
         "set": {name: value for each in given.values() for name, value in each.parameters.items() if name in started},
-        "words": {**WORDS, **FORMS},
+        "words": {**WORDS, **FORMS, "real": REAL.pattern},
         "panels": [
             {"label": label, "curves": [each._asdict() for each in signals]} for label, signals in PANELS.items()
         ],

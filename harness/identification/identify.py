@@ -50,13 +50,10 @@ ROUNDS, BETTER = 4, 1.0
 """Searches at most, each from the end of the one before, and gain in likelihood for another one: a deviation is .5.
 Where all lacks have come to half of NARROW there is no valley to leave."""
 
-UNCONFIRMED, UNCONFIRMED_ALONE = (
-    Threshold(share, "1", f"share by which phi_B of more than two masses may be off, {load} load torque", of_four)
-    for share, load, of_four in (
-        (0.1, "with", "9.5 % is the most of four detailed cars"),
-        (0.3, "without", "28 % is the most of four detailed cars"),
-    )
+UNCONFIRMED = Threshold(
+    0.1, "1", "share by which phi_B of more than two masses may be off", "9.5 % is the most of four detailed cars"
 )
+UNCONFIRMED_ALONE = Threshold(0.3, "1", f"{UNCONFIRMED.of}, without load torque", "28 % is the most of those cars")
 
 HELD_OUT = 0.25
 """Share of the recording, its end, on which the fit is judged; for this the parameters are found without it."""

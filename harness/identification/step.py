@@ -29,6 +29,7 @@ from ..loop.settings import Settings, loop
 from ..recordings.measurement import Measurement
 from ..recordings.source import RecordingError
 from ..recordings.thresholds import Threshold
+from ..recordings.time_base import interval_of
 from .estimator import Z_95
 from .noise import white_noise
 
@@ -71,7 +72,7 @@ STEP_OVER_NOISE = Threshold(10.0, "1", "least step of a torque over its noise", 
 STEP_SIZE = 1e-3
 
 ORIGIN = 1.0
-"""Of what is searched: least_squares differentiates by shares of it, which about 0 are lost in the rounding."""
+"""Of what is searched: finite differences of least_squares are relative to it; about 0 they vanish in rounding."""
 
 CORRELATED = 0.1
 """Time in s of a window beyond which errors of the model no longer go together."""
@@ -143,7 +144,7 @@ def tip(recording: Measurement) -> Tip:
         RecordingError: there is none that can be used.
     """
     t, T = recording.time, recording.T_mot
-    T_s = float(np.median(np.diff(t)))
+    T_s = interval_of(t)
     span = max(round(RISE / T_s), 2)
     k = int(np.abs(T[span:] - T[:-span]).argmax()) + span // 2
     before, after = (

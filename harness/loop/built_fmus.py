@@ -150,22 +150,22 @@ def _say(new: Sequence[Path]) -> None:
 
 
 def frequency_of_plant(made: Settings) -> float | None:
-    """Frequency in Hz at which the drive train of the car swings that the FMU of the plant tells of: by the vehicle
-    file that it was built with, if it is ours, else by its parameters; None: it is the default car's, which is said
-    where the FMU tells nothing."""
+    """Frequency in Hz of the drive train that the plant's FMU was built for, or that its parameters give; None for the
+    default car's, which is said where it is only taken."""
     system, design = loop(made), PLACES["plant"][0]
     path = system.instances["plant"]
+    lacking = f"{path} tells no C, J_1 and J_2"
     if path.stem in PLACES["plant"] and (origin := origin_of(path)):
         if not origin.start_values:
             return None
+        lacking = f"{path} was built for a car of its own, and there is no {design}.fmu beside it that tells C"
         if beside := origin_of(path.with_name(f"{design}.fmu")):
             from ...fmus.catalogue import FMUS  # all equations, which a run of the default car does not need
 
             return own_frequency({**FMUS[design].block.Parameters._field_defaults, **beside.start_values})
-    else:
-        if told := own_frequency(fit(system).parameters(made.parameters)["plant"]):
-            return told
-    warn_once(f"{path} tells no C, J_1 and J_2: the band of the metrics is that of the default car; --vehicle tells it")
+    elif told := own_frequency(fit(system).parameters(made.parameters)["plant"]):
+        return told
+    warn_once(f"{lacking}: the band of the metrics is that of the default car; --vehicle, or frequency=, tells it")
     return None
 
 

@@ -8,7 +8,7 @@ from ...fmus.names import meant
 from ..base.errors import WiringError
 from ..base.known_names import nearest
 from ..cosimulation.limits import Limits
-from .places import CONNECTIONS, INPUTS, OFFERED, OUTPUTS, PARAMETERS, PLACES
+from .places import CONNECTIONS, INPUTS, OFFERED, OUTPUTS, PARAMETERS, PLACES, block_and_variable
 
 
 def mappings(
@@ -27,7 +27,8 @@ def mappings(
 
     def others(*blocks: str) -> dict[str, str]:
         named = {*places, *files} - {Path(block).stem for block in blocks}
-        return {name: theirs for name, theirs in mapping.items() if name.partition(".")[0] not in named}
+        known = {*places, *files}
+        return {name: its for name, its in mapping.items() if block_and_variable(name, known)[0] not in named}
 
     return {(p, c): others(p, c) | own["plant"][p] | own["controller"][c] for p in plants for c in controllers}
 

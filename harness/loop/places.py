@@ -1,6 +1,6 @@
 """The closed loop as data: its places, what stands in them, how they are connected, and what a run gives."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from ...fmus.names import COMPARATORS as COMPARATORS
@@ -91,3 +91,11 @@ OPTIONAL: Mapping[str, float | None] = {
     "can.seed": None,
 }
 """A controller need not use every measurement, and without `enable` it is always on; not every sensor has noise."""
+
+
+def block_and_variable(name: str, blocks: Iterable[str]) -> tuple[str, str]:
+    """The block and the variable in a name of the loop: one of `blocks`, whose names may have points, else what stands
+    before the first one."""
+    fallback = name.partition(".")[0]
+    block = max((each for each in blocks if name.startswith(f"{each}.")), key=len, default=fallback)
+    return block, name[len(block) + 1 :]

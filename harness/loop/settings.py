@@ -29,6 +29,7 @@ from .places import (
     STEP_SIZE,
     TRUTH,
     NameOrFile,
+    block_and_variable,
 )
 
 
@@ -171,13 +172,14 @@ def _of_places(mapping: Mapping[str, str], blocks: Mapping[str, NameOrFile]) -> 
         WiringError: two places have a file of that name.
     """
     places = {Path(block).stem: place for place, block in blocks.items()}
-    parts = [(*name.partition("."), theirs) for name, theirs in mapping.items()]
-    for of, *_ in parts:
+    parts = {name: block_and_variable(name, places) for name in mapping}
+    for of, _ in parts.values():
         if of not in PLACES and len(same := [place for place, block in blocks.items() if Path(block).stem == of]) > 1:
             both = " and ".join(same)
             raise WiringError(f"--map {of}: {both} are both {of}.fmu; rename one, or name the tables {both}")
-    own = {f"{places[of]}.{ours}": theirs for of, _, ours, theirs in parts if of in places.keys() - PLACES.keys()}
-    return {f"{of}{dot}{ours}": its for of, dot, ours, its in parts if of in PLACES or of not in places} | own
+    of_file = [name for name, (of, _) in parts.items() if of in places.keys() - PLACES.keys()]
+    own = {f"{places[parts[name][0]]}.{parts[name][1]}": mapping[name] for name in of_file}
+    return {name: theirs for name, theirs in mapping.items() if name not in of_file} | own
 
 
 def settings(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> Settings:

@@ -54,8 +54,7 @@ class BusLog:
                 f"{path} holds frames of a bus", "; give the database that says what they mean, --dbc FILE"
             )
         known = known_messages(databases)
-        self._frames, self._begin = _read(path, known, databases)
-        self._end = max(of.times[-1] for of in self._frames.values())
+        self._frames, self._end, self._begin = _read(path, known, databases)
         declared = {kind: the_one(path, known[kind.identifier, kind.extended]) for kind in self._frames}
         self._places = [(kind, declared[kind], signal) for kind in self._frames for signal in declared[kind].signals]
         self.columns: Sequence[Column] = _columns(self._places)
@@ -106,14 +105,16 @@ class BusLog:
         return samples(self.path, self.columns[place], np.where(none, np.nan, values), time, where, self._begin)
 
 
-def _read(path: Path, known: Messages, databases: Sequence[Path]) -> tuple[dict[Kind, Frames], Clock | None]:
-    """The frames that are in a database, and what the clock says at the first one."""
+def _read(path: Path, known: Messages, databases: Sequence[Path]) -> tuple[dict[Kind, Frames], float, Clock | None]:
+    """The frames that are in a database, the time in s of the last frame of all, and what the clock says at the first
+    one."""
     frames: dict[Kind, Frames] = {}
     others: set[int] = set()
-    begin = None
+    begin, end = None, 0.0
     with messages(path) as log:
         for message in log:
             begin = message.timestamp if begin is None else begin
+            end = message.timestamp - begin
             if message.is_error_frame or message.is_remote_frame:
                 continue
             if (message.arbitration_id, message.is_extended_id) not in known:
@@ -121,14 +122,14 @@ def _read(path: Path, known: Messages, databases: Sequence[Path]) -> tuple[dict[
                 continue
             kind = Kind(message.channel, message.arbitration_id, message.is_extended_id)
             times, data = frames.setdefault(kind, Frames(array("d"), []))
-            times.append(message.timestamp - begin)
+            times.append(end)
             data.append(bytes(message.data))
     if begin is None:
         raise RecordingError(f"{path} has no frames")
     if not frames:
         shown = ", ".join(f"0x{identifier:X}" for identifier in sorted(others)[:IDENTIFIERS_SHOWN])
         raise RecordingError(f"{path}: no frame is in {', '.join(map(str, databases))}; there are {shown}, ...")
-    return frames, began(path, begin)
+    return frames, end, began(path, begin)
 
 
 def _columns(places: Sequence[tuple[Kind, Any, Any]]) -> list[Column]:

@@ -38,7 +38,7 @@ NO_NUMBER = re.compile(r"[+-]?(1\.#(qnan|snan|ind|nan)0*|nan\(\w*\))|#\w+[!?]|[-
 """As libraries of C print it, errors of spreadsheets, and what displays show."""
 
 NUMBER = re.compile(
-    r"[+-]?(\d+[.,]?\d*|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+|d[+-]\d+)?", re.ASCII | re.IGNORECASE
+    r"[+-]?(\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+|d[+-]\d+)?", re.ASCII | re.IGNORECASE
 )
 
 GROUPED = {

@@ -61,7 +61,7 @@ LENGTHS = {
 }
 """Of the parts of a duration, in s."""
 
-PART = re.compile(rf"(\d+\.?\d*(?:e[+-]?\d+)?)\s*({'|'.join(sorted(LENGTHS, key=len, reverse=True))})(?![a-su-zµ])")
+PART = re.compile(rf"(\d+(?:\.\d*)?(?:e[+-]?\d+)?)\s*({'|'.join(sorted(LENGTHS, key=len, reverse=True))})(?![a-su-zµ])")
 DURATION = re.compile(
     rf"(?P<sign>[+-]?)p?(?P<parts>(?:t?{PART.pattern}[\s.]*)*)[t+]?(?P<clock>\d+:[0-5]\d:[0-5]\d(?:\.\d*)?)?"
 )

@@ -11,7 +11,7 @@ from ..base.known_names import nearest
 from ..base.plain_text import plain
 from .clock_times import EXAMPLES
 from .headings import key, last_part, split, without_brackets
-from .quantities import ANOTHER, BY_UNIT, OF_MANY, QUANTITIES, Aliases, example
+from .quantities import BY_UNIT, OF_MANY, QUANTITIES, Aliases, example, is_of_another
 from .source import Column, RecordingError, Source
 
 NAMES_SHOWN = 3
@@ -130,7 +130,7 @@ class Chooser:
         return [
             (place, unit)
             for place, name, unit in self._readings()
-            if key(last_part(name)) in keys and not ANOTHER.search(name.removesuffix(last_part(name)))
+            if key(last_part(name)) in keys and not is_of_another(name.removesuffix(last_part(name)))
         ]
 
     def _readings(self) -> Iterator[tuple[int, str, str | None]]:

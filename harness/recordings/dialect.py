@@ -67,10 +67,12 @@ class Dialect:
 
 def is_comment(first: str, separator: str) -> bool:
     """Whether a row is one by its first cell. A mark alone, or at a number, may be that of an event in the row; before
-    a blank that separates it is none."""
+    a blank that separates it is none. What says that a value is missing, as #N/A, begins none."""
     found = COMMENT.match(first)
     if not found or separator == " ":
         return found is not None
+    if is_missing(first):
+        return False
     rest = first[found.end("mark") :].rstrip()
     return bool(rest) and (rest != rest.lstrip() or not is_number(rest))
 

@@ -56,6 +56,9 @@ LATE = Threshold(
 )
 
 
+MOST_STEPS = 2.0**53
+
+
 def is_code(values: ArrayLike) -> Any:
     """Which numbers of a file are codes, whatever their resolution."""
     return (np.abs(values) > HUGE) | _near(values, NINES, EXACTLY) | _near(values, ENDS, WRITTEN)
@@ -73,10 +76,12 @@ def _near(values: ArrayLike, codes: set[float], part: float) -> Any:
 
 
 def _resolution(values: np.ndarray) -> tuple[float, ...]:
-    """That of a column, of its different values in ascending order; nothing of less than two."""
+    """That of a column, of its different values in ascending order; nothing of less than two, nor where they have more
+    steps between them than a number can count."""
     inner = values[MOST:-MOST] if len(values) > 3 * MOST else values
-    steps = np.diff(inner)
-    return (float(np.ptp(inner) / round(np.ptp(inner) / steps.min())),) if len(steps) else ()
+    with np.errstate(over="ignore"):
+        steps = np.ptp(inner) / np.diff(inner).min() if len(inner) > 1 else np.inf
+    return (float(np.ptp(inner) / round(steps)),) if steps < MOST_STEPS else ()
 
 
 def coded(written: np.ndarray) -> np.ndarray:

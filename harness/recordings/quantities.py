@@ -43,12 +43,17 @@ PARTS = "v t speed torque drehmoment drehzahl couple height slope grade gradient
 OF_MANY = frozenset(PARTS.split())
 """Names, as `key` gives them, that mean this car only where no path stands before them: Brake/Torque is another."""
 
-ANOTHER = re.compile(
-    r"(?<![a-z])(max|min|limit|request|demand|ref|reference|set|setpoint|target|soll|error|wind|trailer|lead|rear|front)"
-    r"(?![a-z])",
-    re.IGNORECASE,
-)
-"""In a path before a name: that it is no measured quantity of this car, or of a part of it."""
+OTHERS = "max min limit request demand desired command cmd ref reference set setpoint target soll error wind trailer"
+ANOTHER = frozenset((*OTHERS.split(), "lead", "rear", "front"))
+"""Words of a path before a name: that it is no measured quantity of this car, or of a part of it."""
+
+WORD = re.compile("[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
+"""Of a path, also in camel case."""
+
+
+def is_of_another(path: str) -> bool:
+    """Whether a path before a name tells that it is no measured quantity of this car."""
+    return any(word.casefold().removesuffix("s") in ANOTHER for word in WORD.findall(path))
 
 
 STEPS = 3.0

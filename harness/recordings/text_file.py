@@ -15,6 +15,7 @@ import numpy as np
 
 from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_COLUMNS
 from ...fmus.unit_conversion import converts, factor
+from ..base.collected_warnings import warn_once
 from ..base.plain_text import plain
 from .cells import SPELLINGS, TRUTHS, is_missing, numbers
 from .clock_times import seconds
@@ -126,6 +127,8 @@ class TextFile:
                 self._require_short(lines, number)
                 lines = [*map(self._unquoted, lines)] if self._in_quotes else lines
                 if lines[-1] and not end and _is_cut_off([line.rstrip(PADDING) for line in lines[-10:]], separator):
+                    if DIGIT.search(lines[-1]):
+                        warn_once(f"{self.path}: the last line was cut off and is left out")
                     lines[-1] = ""
                 if not lines[-1]:
                     del lines[-1]
@@ -248,10 +251,11 @@ class TextFile:
 
 def _is_cut_off(lines: Sequence[str], separator: str) -> bool:
     """Whether the last of some lines, which has no end, is shorter than those before it: by cells, or by decimals of
-    its last number."""
+    its last number where all others have the same."""
     ends = [re.search(r"[.,][^.,]*$", line.rpartition(separator)[2]) for line in lines]
     *others, last = [(line.count(separator), len(end[0]) if end else 0) for line, end in zip(lines, ends, strict=True)]
-    return bool(others) and (last[0] < others[-1][0] or last[1] < min(decimals for _, decimals in others))
+    decimals = {count for _, count in others}
+    return bool(others) and (last[0] < others[-1][0] or (len(decimals) == 1 and last[1] < min(decimals)))
 
 
 class Piece(NamedTuple):

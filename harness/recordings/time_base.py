@@ -15,7 +15,10 @@ INTERVALS = (1e-6, 1e6)
 """In s, of a recording: times in another unit than they are called are within, and filters of signals can be made."""
 
 OFTEN = Threshold(
-    0.05, "1", "share of equal times from which on the clock is coarse", "a row that is written twice is one"
+    0.05,
+    "1",
+    "share of equal times from which on the clock is coarse",
+    "of a row written twice now and then two times are equal, of a coarse clock most",
 )
 
 

@@ -175,7 +175,7 @@ def require_same_text(text: str, path: Path) -> None:
 
 
 FOLLOWING = ("frequency", "road_load", "start_values")
-"""Of what tells runs apart that which mainly follows from the rest, and is named where nothing else differs."""
+"""Keys that mainly follow from the others: named last."""
 
 
 def differences(before: Any, now: Any, name: str = "") -> Iterator[str]:

@@ -38,7 +38,7 @@ def _column(channel: Channel) -> dict[str, Any]:
         "unit": channel.file_unit.unit,
         "si_unit": channel.unit,
         "samples": len(channel.time),
-        "interval_s": float(np.median(np.diff(channel.time))),
+        "interval_s": channel.interval,
         "begin_s": float(channel.time[0]),
         "end_s": float(channel.time[-1]),
         "least": float(written.min()),

@@ -74,8 +74,10 @@ function take({wanted: of, answers}) {
   const moved = !shown || shown.wanted.manoeuvre !== of.manoeuvre || shown.duration !== length(of);
   shown = {wanted: of, duration: length(of), runs: new Map(controllers(of).map((controller) => [controller, answers.get(controller)]))};
   const warnings = new Set([unread, ...[...shown.runs.values()].flatMap((each) => each.warnings)].filter(Boolean));
-  if (!waiting) say([...warnings].join("; "), warnings.size > 0);
-  unread = "";
+  if (!waiting) {
+    say([...warnings].join("; "), warnings.size > 0);
+    unread = "";
+  }
   draw(moved ? window_of(of) : undefined);
 }
 

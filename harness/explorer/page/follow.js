@@ -95,12 +95,14 @@ class Followers {
       return Math.exp(next);
     }
     const [least, most] = [frequency(low), frequency(high)], Hz = (f) => Number(f.toPrecision(3));
-    while (b - a > 1e-10) {
-      const middle = (a + b) / 2;
-      if (missed(middle) < 0) a = middle; else b = middle;
+    if (least <= wanted && wanted <= most) {
+      while (b - a > 1e-10) {
+        const middle = (a + b) / 2;
+        if (missed(middle) < 0) a = middle; else b = middle;
+      }
+      const x = (a + b) / 2, leaps = Math.abs(missed(x)) > this.data.close; // to another mode
+      if (!leaps) return Math.exp(x);
     }
-    const x = (a + b) / 2, leaps = Math.abs(missed(x)) > this.data.close; // to another mode
-    if (least <= wanted && wanted <= most && !leaps) return Math.exp(x);
     const given = ["C", ...this.data.shafts].filter((name) => name in car).map((name) => `${name} = ${Hz(car[name])} N.m/rad`);
     throw new Refused(`${given.join(", ")}: the frequency of the drive train would have to be ${Hz(wanted)} Hz, and that of ` +
       `${this.data[which].fmu} can be ${Hz(least)} to ${Hz(most)} Hz`);

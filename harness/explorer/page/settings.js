@@ -11,8 +11,8 @@ function typed(text, words) {
   const found = {};
   for (const part of text.split(",").map((each) => each.trim()).filter(Boolean)) {
     const [name, given, ...more] = part.split("=").map((each) => each.trim());
-    const value = {true: 1, false: 0}[given?.toLowerCase()] ?? Number(given || NaN);
-    if (!/^[^.]+\../.test(name) || Number.isNaN(value) || more.length)
+    const truth = {true: 1, false: 0}[given?.toLowerCase()], value = truth ?? Number(given);
+    if (!/^[^.]+\../.test(name) || (truth === undefined && !new RegExp(`^(${words.real})$`, "i").test(given)) || more.length)
       throw new Refused(said(words, "form", {text: `'${part}'`, form: words[name.includes("@") ? "changed" : "constant"]}));
     if (!Number.isFinite(value)) throw new Refused(said(words, "finite", {text: `'${part}'`}));
     if ((found[name] ?? value) !== value) throw new Refused(said(words, "twice", {name, before: found[name], value}));

@@ -71,7 +71,7 @@ def plan_of(outcomes: Sequence[Outcome]) -> Plan:
 
 
 MOST_NAMED = 9
-"""Kinds of faults that no case has, which are named."""
+"""Kinds of faults without a case that a message names."""
 
 
 def coverage(outcomes: Sequence[Outcome]) -> str:

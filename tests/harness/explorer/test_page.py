@@ -4,7 +4,6 @@ import json
 import re
 from base64 import b64decode
 from collections.abc import Iterator
-from contextlib import suppress
 from gzip import decompress as gunzip
 from pathlib import Path
 from shutil import copyfile
@@ -31,6 +30,7 @@ from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.colours import BLUE, GREY
 from tests import ROOT
 from tests.browser import Browser
+from tests.harness.commands import answer as answered
 from tests.harness.explorer.made import column, in_node, loops
 
 LARGEST = 600_000
@@ -131,16 +131,17 @@ def test_what_is_typed_is_answered_as_set_is(
         *("controller.k_d=-1", "plant.k_q=1", "plane.m=1", "k_d=1", "plant.m=much", "plant.m=1e999"),
         *("controller.k_d@soon=1", "controller.k_d@5.9991=1", "plant.v_0@1=5", "plant.mu=0.5"),
         *("plant.m=1500, plant.m=1600", "controller.k_d@1=1, controller.k_d@1.0=2"),
-        *("plant.T_0=100", "controller.k_d@5.999=1"),
+        *("plant.m=0x5DC", "plant.m=inf", "plant.T_0=100", "controller.k_d@5.999=1"),
     ]
     answers = asked(tmp_path, data, *({"typed": text} for text in typed))["answers"]
     where = ["--fmus", str(native.parent), "--build", "native", "--output", str(tmp_path)]
     for text, answer in zip(typed, answers, strict=True):
         said = [answer["refused"]] if "refused" in answer else answer["warnings"]
         words = [word for each in text.split(", ") for word in ("--set", each)]
-        with suppress(SystemExit):
-            assert main(["simulate", *words, *where, "--replace"]) == (2 if "refused" in answer else 0)
-        error = re.sub(r"--plant |(?<=1[56]00)\.0", "", capsys.readouterr().err + caplog.text)
+        caplog.clear()
+        code, _, error = answered(capsys, "simulate", *words, *where, "--replace")
+        assert code == (2 if "refused" in answer else 0), text
+        error = re.sub(r"--plant |(?<=1[56]00)\.0", "", error + caplog.text)
         assert all(line in error for line in said), (text, error)
         assert bool(said) == (text != typed[-1])
 

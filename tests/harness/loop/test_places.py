@@ -129,6 +129,8 @@ def test_a_table_named_as_the_file_of_an_fmu_is_for_it_alone() -> None:
     both = Settings(controller=files[0], mapping={"controller.T_ref": "a", **given}).mapping
     assert both == {**made[files[0]], "other.T_ref": "out"}
     assert Settings("plant.fmu", "other/plant.fmu", mapping={"plant.v": "v"}).mapping == {"plant.v": "v"}
+    dotted = Settings("x/car_v1.2.fmu", mapping={"car_v1.2.T_gear": "tau", "car_v1.2.v": "speed"}).mapping
+    assert dotted == {"plant.T_gear": "tau", "plant.v": "speed"}
     with pytest.raises(WiringError, match=r"^--map mine: controller and plant are both mine\.fmu; rename one, or name"):
         Settings("mine.fmu", "x/mine.fmu", mapping=given)
     with pytest.raises(WiringError, match=r"^other is no place of the loop, nor the name of an FMU in it; did you"):

@@ -145,6 +145,10 @@ TWO_LINES = "Time,Velocity 1,Motor Torque\ns,km/h,Nm"
 
 HABITS: dict[str, Habit] = {
     **{f"no value: {word!r}": replaced(30, 2, word, ";", said="no value") for word in NO_VALUE},
+    "no value in the first cells": text(
+        lambda k: f'"{"#N/A" if 20 < k < 40 else k}";"' + german(k).replace(";", '";"') + '"',
+        ";".join(("Lap", *NAMES)),
+    ),
     "no value: quoted": replaced(30, 2, '""', said="has no value"),
     "no value in the last rows": text(lambda k: plain(k) if k < 58 else f"{TIME[k]:.1f},,", kept=range(58)),
     "no value in the first rows": text(lambda k: plain(k) if k > 5 else f"{TIME[k]:.1f},NaN,NaN", kept=range(6, COUNT)),
@@ -258,6 +262,9 @@ HABITS: dict[str, Habit] = {
     "a last line cut off after a mark": text(below="6.1,", kept=range(COUNT)),
     "a last number cut off": text(below="6.1,36.50,4"),
     "a last character cut off": Habit(text(coding="utf-16").content[:-1]),
+    "a last number as short as others are": Habit(
+        text(lambda k: ",".join(f"{float(cell):g}" for cell in cells(k)), below="6.1,36.5,4").content
+    ),
     "a last line without an end": Habit(text().content.rstrip(b"\n")),
     "a footer": text(below="End of file\n"),
     "a footer with numbers": text(below="Min,0,-35\nMax,50,125\n"),

@@ -124,10 +124,11 @@ def test_error_frames_and_remote_frames_hold_no_signals(tmp_path: Path) -> None:
             [*drive(20), message(0.2, 256, b"\x01"), message(0.21, 256, bytes(4))],
             r"frame at 0\.2 s: 01 is no Motor \(0x100\) of 4 bytes",
         ),
+        ([*drive(20), message(0.2, 256, b"\x01"), message(0.3, 0x123, b"\x00")], r"01 is no Motor"),
         ([*drive(20), *drive(3)], "does not come after"),
         ([*drive(20), message(0.9, 256, bytes(4))], "gap of"),
     ],
-    ids=["empty", "unknown", "short", "backwards", "gap"],
+    ids=["empty", "unknown", "short", "short, then unknown", "backwards", "gap"],
 )
 def test_a_bad_log_is_refused_in_one_line(tmp_path: Path, frames: list, expected: str) -> None:
     path, databases = write(tmp_path, frames)

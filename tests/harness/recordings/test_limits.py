@@ -49,8 +49,9 @@ def test_a_text_in_many_pieces_is_read_as_in_one(tmp_path: Path, monkeypatch: py
     path = tmp_path / "drive.csv"
     path.write_bytes(TEXTS[variant](recording()))
     whole = read_drive(path)
-    monkeypatch.setattr(text_file, "PIECE", 1000)
-    in_pieces = read_drive(path)
+    with monkeypatch.context() as patch:
+        patch.setattr(text_file, "PIECE", 1000)
+        in_pieces = read_drive(path)
     for name in ("time", "v", "elevation", "T_mot"):
         np.testing.assert_array_equal(getattr(whole, name), getattr(in_pieces, name))
 

@@ -171,3 +171,26 @@ def test_a_refusal_names_the_option_that_mends_it(tmp_path: Path, header: str, g
     with pytest.raises(RecordingError, match=rf"--column {quantity}="):
         read_drive(path)
     assert len(read_drive(path, {quantity: heading}).v) == 2
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "Request/",
+        "DriverRequest/",
+        "Limits/",
+        "MaxValues/",
+        "TorqueDemand.",
+        "Desired/",
+        "Command/",
+        "Driver_Request\\",
+    ],
+)
+def test_a_torque_that_is_demanded_or_a_limit_is_not_that_of_the_motor(tmp_path: Path, path: str) -> None:
+    file = tmp_path / "drive.csv"
+    rows = "0,10,1\n1,10,2\n"
+    file.write_text(f"Time [s],v [m/s],{path}Motor Torque [Nm]\n{rows}", encoding="utf-8")
+    with pytest.raises(RecordingError, match="no column Motor Torque"):
+        read_drive(file)
+    file.write_text(f"Time [s],v [m/s],Powertrain/Motor Torque [Nm]\n{rows}", encoding="utf-8")
+    assert read_drive(file).T_mot.tolist() == [1.0, 2.0]

@@ -200,9 +200,13 @@ def test_a_code_is_found_only_far_from_all_other_values(code: float) -> None:
         assert not coded(1.37 * written).any(), "it is no code"
 
 
+def test_a_number_that_is_nearly_0_is_a_value_like_others() -> None:
+    assert not coded(np.array([0.0, 1e-310, 1.0])).any()
+
+
 @together("resolution, integer", product([1.0, 0.25, 0.1, 0.05, 0.001], sorted(RESERVED)))
 def test_a_reserved_integer_times_the_resolution_is_a_code(resolution: float, integer: float) -> None:
-    """Of 8, 12, 16 and 32 bits, far from all others."""
+    """Of 8 to 16, 20, 24, 32, 48 and 64 bits, far from all others."""
     code = resolution * integer
     for apart, expected in ((1.01 * SCALED, True), (0.99 * SCALED, False)):
         others = code - np.sign(code) * np.linspace(apart, 1.0 + apart, 50) * 0.17 * abs(code)
