@@ -79,9 +79,9 @@ def run(args: Arguments) -> int:
             _record(made, outcome, path, *one, read)
         for provenance, path in made.reports():
             report(outcomes, manoeuvres, provenance, path)
-        builds = {made.plant_name: made.build for made in given.values()}
+        builds = {made.plant_name: made.build for made in given.values() if str(made.plant) in PLACES["plant"]}
         built = ", ".join(f"{plant} {build}" for plant, build in builds.items())
-        args.say(f"FMUs: {built}; signals of {len(outcomes)} runs: {folder}")
+        args.say(f"{f'FMUs: {built}; ' if built else ''}signals of {len(outcomes)} runs: {folder}")
         say_unknowns(args)
         made.tell(print_runs, rows, title, runs=[each.record for each in outcomes])
     return 0

@@ -1,6 +1,7 @@
 """Drafts which variables of somebody else's FMU are those that the loop exchanges with a place: by names, causality and
 unit. What is not sure stands behind a # and does not count until you take that away, what is missing is named; where
-nothing fits that a run needs, the exit code is 2. The file is what --map of the other commands takes.
+nothing fits at all, the exit code is 2. The file is what --map of the other commands takes. Names of one FMU of several
+stand in a table with the name of its file, as [their_car].
 
 examples:
   driveline map their_car.fmu --place plant --output theirs.toml
@@ -27,7 +28,7 @@ class Arguments(Replacing, JsonPrinting):
 
 def run(args: Arguments) -> int:
     from ..cosimulation.interface import Interface
-    from ..exchange.mapping_draft import as_toml, draft
+    from ..exchange.mapping_draft import NO_UNIT, as_toml, draft, missing
 
     proposals = draft(Interface(args.fmu), args.place)
     needed = [each for each in proposals if each.port.name not in OPTIONAL]
@@ -40,6 +41,10 @@ def run(args: Arguments) -> int:
         args.say(f"written: {args.output}")
         if guessed := [each.port.variable for each in proposals if each.theirs and not each.sure]:
             args.say(f"not sure, and behind a # until you have read them: {', '.join(guessed)}")
+        if silent := [each.port.variable for each in proposals if each.theirs and not each.has_unit]:
+            args.say(f"{NO_UNIT} those of the loop: {', '.join(silent)}")
+        for line in missing(proposals):
+            args.say(line)
     elif not args.silent:
         print(text, end="")
     args.document(

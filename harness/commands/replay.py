@@ -112,7 +112,7 @@ def drive(
         level = "" if recording.elevation is not None else "; it has no elevation: the road is level"
         args.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {build} FMUs, {', '.join(given)}{level}")
         rides = replay(track, load, given, args.held)
-        unkept = followed_speed(recording, rides)
+        unkept = followed_speed(recording, rides) if args.held is None else []  # it is not meant to keep the speed
         tell(unkept, args.recording, args.strict)
         odd = [*odd, *unkept]
         made.begin()

@@ -61,7 +61,7 @@ def warn_of_gains(vehicle: Path | None, parameters: Path | None, loops: Iterable
 
     if not toml_entries(vehicle):
         LOG.warning(f"{vehicle} has no parameter: the car is the default one (`driveline car --template` has them all)")
-    elif parameters is None and any(map(_has_gains, loops)):
+    elif parameters is None and any(made.control and _has_gains(made) for made in loops):
         LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
 
 

@@ -23,7 +23,7 @@ from .arguments import option
 from .manoeuvres import Chosen, Listing, manoeuvre
 from .options import Figures, expert, output, record, seconds
 from .printing import JsonPrinting
-from .settings import caption, dampings, settings
+from .settings import caption, settings
 from .signals_run import OneRun, signals_job, write_frames
 
 
@@ -84,7 +84,8 @@ def run(args: Arguments) -> int:
         else:
             controller = given.controller_name if given.control else WITHOUT
             outcome = Outcome(Case(given.plant_name, manoeuvre.name, controller), metrics, results)
-            made.tell(print_runs, [outcome.row()], dampings([given.controller_name]), runs=[outcome.record])
+            title = f"damping by {controller}" if given.control else WITHOUT
+            made.tell(print_runs, [outcome.row()], title, runs=[outcome.record])
     return 0
 
 

@@ -23,7 +23,7 @@ WORDS = {
     "wheel": "2 whl wheel wheels rad rim tyre tire",
     "brake": "brk brake brakes brems bremse",
     "gear": "gear shaft gearbox getriebe halfshaft axle driveshaft",
-    "body": "v veh vehicle car chassis body fzg",
+    "body": "v vx ax veh vehicle car chassis body fzg",
     "acceleration": "a acc accel acceleration",
     "left": "l left li fl",
     "right": "r right re fr",
@@ -43,13 +43,14 @@ WORDS = {
 
 MEANINGS = {abbreviation: word for word, texts in WORDS.items() for abbreviation in texts.split()}
 
-SPEED_OF_BODY = frozenset(("v", "vx"))
-"""Letters that mean a speed and whose at once."""
+OF_BODY = {"v": "speed", "vx": "speed", "ax": "acceleration"}
+"""Letters that mean the body and a quantity at once."""
 
 LEAST = 0.5
 """Share of common words from which a variable is proposed; all must be common for it to be sure."""
 
 
+NO_UNIT = "the FMU tells no unit, taken as"
 NOT_SURE = "NOT SURE: take the first # away if it is"
 
 
@@ -60,11 +61,13 @@ class Proposal(NamedTuple):
         port: of the loop.
         theirs: the name in the FMU; None: nothing fits.
         sure: whether all words are the same and no other variable has them.
+        has_unit: whether the FMU tells its unit.
     """
 
     port: Port
     theirs: str | None
     sure: bool
+    has_unit: bool = True
 
 
 def draft(interface: Interface, place: str) -> list[Proposal]:
@@ -82,7 +85,10 @@ def draft(interface: Interface, place: str) -> list[Proposal]:
         sure = bool(left) and left[0][0] == 1.0 and [share for share, _ in left].count(1.0) == 1
         taken |= {theirs} if theirs else set()
         proposals[name] = Proposal(ports[name][0], theirs, sure)
-    return [_last_of_its_kind(name, ports, proposals, found) for name in ports]
+    drafted = (_last_of_its_kind(name, ports, proposals, found) for name in ports)
+    return [
+        each._replace(has_unit=not each.theirs or bool(unit_of(interface.variables[each.theirs]))) for each in drafted
+    ]
 
 
 def _last_of_its_kind(
@@ -108,17 +114,21 @@ def as_toml(proposals: list[Proposal], file: str, place: str) -> str:
     for each in proposals:
         if each.theirs is not None:
             unit = f"in {each.port.unit}" if each.port.unit else ""
+            if unit and each.port.unit != "1" and not each.has_unit:
+                unit = f"{NO_UNIT} {each.port.unit}"
             notes = ", ".join(note for note in (unit, "" if each.sure else NOT_SURE) if note)
             entry = f"{'' if each.sure else '# '}{each.port.variable} = {dumps(each.theirs)}"
             lines.append(entry + (f"  # {notes}" if notes else ""))
-    missing = [each.port for each in proposals if each.theirs is None]
-    for needed in (True, False):
-        names = [port.variable for port in missing if (port.name not in OPTIONAL) == needed]
-        if names:
-            lines.append(
-                f"# {'missing, and no run goes without' if needed else 'missing, but optional'}: {', '.join(names)}"
-            )
+    lines += [f"# {line}" for line in missing(proposals)]
     return "\n".join(lines) + "\n"
+
+
+def missing(proposals: Sequence[Proposal]) -> Iterator[str]:
+    """What nothing fits, in a line each: without what no run goes, and what is optional."""
+    for needed, what in ((True, "missing, and no run goes without"), (False, "missing, but optional")):
+        lacking = (each.port for each in proposals if each.theirs is None)
+        if names := [port.variable for port in lacking if (port.name not in OPTIONAL) == needed]:
+            yield f"{what}: {', '.join(names)}"
 
 
 def words(name: str) -> frozenset[str]:
@@ -126,7 +136,7 @@ def words(name: str) -> frozenset[str]:
     parts = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d", name.replace("_", " ").replace(".", " "))
     folded = [str(part).lower() for part in parts]
     meant = {MEANINGS.get(part, part) for part in folded}
-    return frozenset(meant | ({"speed"} if SPEED_OF_BODY & set(folded) else set[str]()))
+    return frozenset(meant | {OF_BODY[part] for part in folded if part in OF_BODY})
 
 
 def _alike(ours: frozenset[str], theirs: frozenset[str]) -> float:

@@ -33,6 +33,13 @@ WIDEST_INTERVAL = Threshold(
 )
 
 
+def meaning(identified: Identified) -> str:
+    """What J_2 and C are."""
+    if identified.name == WITH_LOAD and not identified.explained:
+        return "J_2 and C are those that predict best and not the car's, as the model does not explain all"
+    return MEANS[identified.name]
+
+
 class Row(NamedTuple):
     """What is known of a parameter.
 
@@ -128,7 +135,7 @@ def identified_lines(identified: Identified) -> list[str]:
     load = "" if np.isnan(quality.T_load) else f", load torque {quality.T_load:.1f} %"
     size_L = "" if np.isnan(quality.T_load) else f", load torque {quality.size_L:.2f}"
     return [
-        f"identified {identified.name}: {MEANS[identified.name]}; 95 % intervals",
+        f"identified {identified.name}: {meaning(identified)}; 95 % intervals",
         *(
             f"  {row.name:{name}} {row!s:{number}} {share:9} {by}"
             for row, share, by in zip(rows, shares, told, strict=True)

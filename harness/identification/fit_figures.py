@@ -13,7 +13,7 @@ from ..views.colours import BLACK, BLUE, GREY, VERMILION
 from ..views.figure_options import PLAIN, FigureOptions
 from ..views.figure_style import plot
 from ..views.panels import DASHED, DOTTED, SOLID, Axis, Band, Curve, Level, Panel, Part, Points
-from .car_file import MEANS
+from .car_file import meaning
 from .drive_train_response import FREQUENCIES, Tyre, response
 from .free_runs import SIMULATED, free_runs
 from .identify import Identified
@@ -64,7 +64,7 @@ def plot_fit(identified: Identified, recording: Measurement, stem: Path, options
     alone = [*predicted(identified, recording, window), *responses(identified)]
     rows = [*([panel] for panel in alone), ellipses(identified)]
     title = f"Prediction, frequency response (teeth in contact) and certainty\n{identified.name}"
-    options = options._replace(caption=f"{options.caption}\n{READING}; {MEANS[identified.name]}".strip())
+    options = options._replace(caption=f"{options.caption}\n{READING}; {meaning(identified)}".strip())
     return plot(rows, Axis("time in s", window), title, stem, options, size=(7.2, 1.75), same_y=False)
 
 

@@ -8,7 +8,7 @@ from ..recordings.measurement import Measurement
 from ..views.page.figures import figure
 from ..views.page.report import Heading, Row, Section, Table, write_report
 from ..views.panels import Axis, within
-from .car_file import MEANS, found, of_car
+from .car_file import found, meaning, of_car
 from .fit_figures import FREQUENCY, predicted, responses
 from .free_runs import SIMULATED
 from .identify import Identified
@@ -25,7 +25,7 @@ def report(identified: Identified, recording: Measurement, provenance: Mapping[s
         provenance: see `harness.simulation.provenance.content`.
     """
     sections = [
-        Section("What was found", f"{identified.name}: {MEANS[identified.name]}.", _found(identified)),
+        Section("What was found", f"{identified.name}: {meaning(identified)}.", _found(identified)),
         _over_time(identified, recording),
         _over_frequency(identified),
     ]

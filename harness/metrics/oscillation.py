@@ -16,6 +16,9 @@ CONTINUED = 9
 SHORT = 2**16
 """Samples of a record whose filter is kept for the next one, which often is as long."""
 
+SETTLED = 0.05
+"""Share of the step of the demand by which a gear torque that has settled swings; such swings need not fade."""
+
 FADED = 10.0
 """Periods of its corner after which the answer of a low-pass to an impulse is below 1e-19 of its largest value."""
 
@@ -49,11 +52,11 @@ def damping_ratio(y: np.ndarray, T_s: float, first: int, overshoot: float) -> fl
 
     y, relative to its step, is low-passed at 12 Hz without phase shift. Of its extremes above 0.02 the
     first 30 that alternate are taken; s is the mean decrease of ln|extreme| from one to the next, and
-    zeta = s/sqrt(pi^2 + s^2). With fewer than three it follows from the overshoot alone, the
-    decrement of one half period.
+    zeta = s/sqrt(pi^2 + s^2). With fewer than three, or where none is beyond SETTLED, it follows from the
+    overshoot alone, the decrement of one half period.
     """
     extremes = _alternating_extremes(low_passed(y, T_s, 12.0)[first:], round(0.03 / T_s))[:30]
-    if len(extremes) >= 3:
+    if len(extremes) >= 3 and max(map(abs, extremes)) > SETTLED:
         numbers = np.arange(2)
         first, second = straight_line(np.arange(len(extremes)), np.log(np.abs(extremes)), numbers)
         s = first - second

@@ -7,13 +7,10 @@ import numpy as np
 
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent
-from .oscillation import damping_ratio, straight_line
+from .oscillation import SETTLED, damping_ratio, straight_line
 
 FITTED = 0.9
 """Length in s of the end of a run to which the line of the final value is fitted."""
-
-SETTLED = 0.05
-"""Share of the step of the demand by which a gear torque that has settled swings."""
 
 REACHED = 0.9
 """Share of its way that the response is measured to."""

@@ -92,7 +92,22 @@ def simulate(
         warn_once(f"{results.ended} of {manoeuvre.duration:g} s, in {manoeuvre.name} {damping}: it has no metrics")
     told = {name.partition(".")[2]: value for name, value in given.items() if name.startswith("controller.")}
     results.frequency = made.frequency or own_frequency(told) or frequency_of_plant(made)
+    if made.control and "controller.cause" in (results.dtype.names or ()):
+        _warn_of_fallback(results, f"{manoeuvre.name} on {made.plant_name}")
     return results
+
+
+def _warn_of_fallback(results: Results, run: str) -> None:
+    """Says that the control let go for most of a run, and why."""
+    from ...models.controller.causes import FAILURES  # all equations, which a run does not need
+    from ...models.controller.supervision import FALLBACK
+
+    cause = results["controller.cause"][results["controller.status"] == FALLBACK]
+    if len(cause) > 0.5 * len(results):
+        found = [row for row in FAILURES if row.number == np.bincount(cause.astype(int)).argmax()]
+        why = f", {found[0].word}: {found[0].finding}" if found else ""
+        share = 100.0 * len(cause) / len(results)
+        warn_once(f"{run}: the damping did not act in {share:.0f} % of the run (status fallback{why})")
 
 
 def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:

@@ -7,8 +7,9 @@ import numpy as np
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.declaration import Absent
 from ..metrics.evaluate import at_samples, evaluate
+from ..metrics.oscillation import SETTLED
 from ..metrics.run_metrics import Metrics
-from ..metrics.step_response import SETTLED, height_of_step, response
+from ..metrics.step_response import height_of_step, response
 from .colours import SKY
 from .metrics_table import SHOWN, number
 from .panels import Arrow, Band, Curve, Part, Spans

@@ -109,14 +109,15 @@ def ride_rows(rides: Mapping[str, RideMetrics]) -> Iterator[list[str]]:
     """A row for each ride by its name, with what it is over the first one, the undamped, in brackets."""
     undamped = next(iter(rides.values()))
     for name, ride in rides.items():
-        yield [name, *(_compared(metric.of(ride), metric.of(undamped)) for metric, _ in RIDES_SHOWN)]
+        yield [name, *(_compared(metric.of(ride), metric.of(undamped), column) for metric, column in RIDES_SHOWN)]
 
 
-def _compared(value: float, other: float) -> str:
-    """A value, and in brackets its ratio to another one."""
+def _compared(value: float, other: float, column: Column) -> str:
+    """A value in the unit of its column, and in brackets its ratio to another one."""
     if isnan(value):
         return "-"
-    return f"{value:.3g} ({value / other:.3f})" if other and not isnan(other) else f"{value:.3g} (-)"
+    ratio = f"{value / other:.3f}" if other and not isnan(other) else "-"
+    return f"{value * column.factor:.3g} ({ratio})"
 
 
 def write_rides(rides: Mapping[str, RideMetrics], title: str, path: Path, notes: Sequence[str] = ()) -> None:

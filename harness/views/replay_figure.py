@@ -22,6 +22,9 @@ USUAL_UNITS = {"v": FileUnit("km/h", 1.0 / 3.6), "T_mot": FileUnit("N.m")}
 PIECE, PIECES = 6.0, 5
 """Length in s of the roughest pieces, and how many there are."""
 
+STRIDE, ALIKE = 0.1, 0.99
+"""Time in s from one to the next, and over the roughest what is about as rough."""
+
 LEAD = 1.0
 """Time in s before the roughest piece from which on a close-up shows it."""
 
@@ -96,18 +99,23 @@ def _with_rms(name: str, run: np.ndarray, unit: FileUnit) -> str:
 
 
 def roughest(run: np.ndarray) -> list[tuple[float, float]]:
-    """Beginnings in s of the pieces with the largest mean swing of the gear torque about the demand, and that swing in
-    N.m."""
+    """Beginnings in s, to STRIDE, of the pieces with the largest mean swing of the gear torque about the demand, which
+    do not overlap, and that swing in N.m. Of pieces that swing about as much the middle one is taken."""
     T_s = interval(run)
-    swing = amplitude(run["plant.T_gear"] - run["controller.T_driver"], T_s)
     length = min(round(PIECE / T_s), len(run) - 1)
-    starts = piece_starts(len(run) - 1, length)
-    means = np.array([swing[start : start + length].mean() for start in starts])
-    order = np.argsort(-means, kind="stable")[:PIECES]
-    return [(float(run["time"][starts[k]]), float(means[k])) for k in order]
+    starts = np.unique([*range(0, len(run) - length, max(round(STRIDE / T_s), 1)), len(run) - 1 - length])
+    sums = np.cumsum(np.insert(swinging(run), 0, 0.0))
+    means = (sums[np.minimum(starts + length, len(sums) - 1)] - sums[starts]) / length
+    found = list[tuple[float, float]]()
+    while len(found) < PIECES and means.max() > -np.inf:
+        first = int(np.argmax(means))
+        less = np.flatnonzero(means[first:] < ALIKE * means[first])
+        k = first + (int(less[0]) if len(less) else len(means) - first) // 2
+        found.append((float(run["time"][starts[k]]), float(means[k])))
+        means[abs(starts - starts[k]) < length] = -np.inf
+    return found
 
 
-def piece_starts(intervals: int, length: int) -> list[int]:
-    """Where pieces of equal length begin that cover so many intervals; the last one ends with them, and so may overlap
-    the one before."""
-    return [*range(0, intervals - length, length), intervals - length]
+def swinging(run: np.ndarray) -> np.ndarray:
+    """How far the gear torque swings about the demand, in N.m."""
+    return amplitude(run["plant.T_gear"] - run["controller.T_driver"], interval(run))

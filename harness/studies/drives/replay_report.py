@@ -17,7 +17,7 @@ from ...views.page.figures import Figure, figure
 from ...views.page.report import Heading, Row, Section, Table, of_metrics, write_report
 from ...views.page.thinning import thinned
 from ...views.panels import Axis, Curve, Panel, within
-from ...views.replay_figure import PIECE, USUAL_UNITS, roughest, speeds, swings, torques
+from ...views.replay_figure import PIECE, USUAL_UNITS, roughest, speeds, swinging, swings, torques
 from ...views.signal_lines import Line, Look, Runs, column, looks_of
 
 SEGMENT = 2048
@@ -79,11 +79,11 @@ def verdict(rides: Mapping[str, RideMetrics], odd: Sequence[str]) -> str:
 
 def _worst(pieces: Sequence[tuple[float, float]], rides: Rides) -> Table:
     undamped = next(iter(rides.values()))[1]
-    swing = amplitude(undamped["plant.T_gear"] - undamped["controller.T_driver"], T_S)
+    without = swinging(undamped)
     rows = []
     for start, mean in pieces:
         at = slice(round(start / T_S), round((start + PIECE) / T_S))
-        rows.append(Row([_name(start), f"{mean:.2f}", f"{swing[at].mean():.2f}"], _name(start)))
+        rows.append(Row([_name(start), f"{mean:.2f}", f"{without[at].mean():.2f}"], _name(start)))
     meaning = "mean over the piece of half the peak to peak within 0.2 s, of gear torque less demand"
     return Table(
         [Heading("piece"), Heading("swing, N·m", meaning, True), Heading("without damping", number=True)], rows

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...metrics.declaration import Column, Metric, declared
+from ...metrics.oscillation import SETTLED
 from ...metrics.run_metrics import Metrics
-from ...metrics.step_response import SETTLED
 
 ROBUSTNESS_MANOEUVRES = ("tipin15", "tipout", "launch")
 

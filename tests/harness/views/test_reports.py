@@ -82,7 +82,7 @@ def test_a_ride_without_damage_has_a_dash_and_no_ratio():
     lines = [line.split() for line in printed(rides_table(rides, "a drive")).splitlines()]
     assert [line for line in lines if "mine" in line or "without" in line] == [
         ["without", "damping", "2", "(1.000)", "-", "4", "(1.000)", "0", "(-)"],
-        ["mine", "1", "(0.500)", "1", "(-)", "3", "(0.750)", "0.5", "(-)"],
+        ["mine", "1", "(0.500)", "1", "(-)", "3", "(0.750)", "1.8", "(-)"],  # km/h
     ]
     assert rides_reasons(rides) == ["- gear damage: not finite (without damping)"]
 

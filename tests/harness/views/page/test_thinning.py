@@ -1,7 +1,5 @@
 """What a page shows of long runs: fewer rows, and nothing of what matters is lost."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,7 +8,7 @@ from hypothesis.extra.numpy import arrays
 
 from driveline.harness.views.page.thinning import MOST_ROWS, VALUES, extremes, most_rows, thinned
 from driveline.harness.views.panels import Curve, Level, Panel
-from driveline.harness.views.replay_figure import PIECE, piece_starts, roughest
+from driveline.harness.views.replay_figure import PIECE, PIECES, roughest
 
 SIGNALS = st.integers(1, 400).flatmap(
     lambda length: arrays(float, length, elements=st.floats(-1e6, 1e6) | st.sampled_from([0.0, np.nan]))
@@ -57,20 +55,13 @@ def test_what_is_short_stays_as_it_is(length: int) -> None:
     assert (drawn.y is curve.y) == (length <= MOST_ROWS)
 
 
-@given(st.integers(1, 10_000), st.integers(1, 3000))
-def test_pieces_of_a_drive_cover_it(intervals: int, length: int) -> None:
-    length = min(length, intervals)
-    starts = piece_starts(intervals, length)
-    assert starts[0] == 0
-    assert starts[-1] + length == intervals
-    assert all(0 < after - before <= length for before, after in pairwise(starts))
-    assert len(starts) == -(-intervals // length)
-
-
 @pytest.mark.parametrize("duration", [17.8, 18.0, 23.9])
 def test_the_roughest_piece_is_found_at_the_end_of_a_drive(duration: float) -> None:
     t = 0.002 * np.arange(round(duration / 0.002) + 1)
     run = np.zeros(len(t), [(name, float) for name in ("time", "plant.T_gear", "controller.T_driver")])
     run["time"] = t
     run["plant.T_gear"][-250:] = 30.0 * np.sin(50.0 * t[-250:])
-    assert roughest(run)[0][0] + PIECE == pytest.approx(duration)
+    pieces = [start for start, _ in roughest(run)]
+    assert pieces[0] + PIECE == pytest.approx(duration, abs=0.2)
+    assert len(pieces) <= PIECES
+    assert all(abs(a - b) > PIECE - 1e-6 for k, a in enumerate(pieces) for b in pieces[:k])
