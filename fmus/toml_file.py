@@ -47,9 +47,12 @@ def toml_entries(path: Path) -> dict[str, Any]:
         return tomllib.loads(text)
     except ValueError as error:
         named = re.search(r"at line (\d+)", str(error))
-        found = UNQUOTED.match(text.split("\n")[int(named[1]) - 1]) if named else None
-        quotes = f'; a number with a unit stands in quotes, {found[1]} = "{found[2].strip()}"' if found else ""
-        raise ValueError(f"not TOML: {error}{quotes}") from error
+        line = text.split("\n")[int(named[1]) - 1].strip() if named else ""
+        if found := UNQUOTED.match(line):
+            advice = f'; a number with a unit stands in quotes, {found[1]} = "{found[2].strip()}"'
+        else:
+            advice = f": {line!r:.{SHOWN}}" if line else ""
+        raise ValueError(f"not TOML: {error}{advice}") from error
 
 
 def _require_shallow(text: str) -> None:

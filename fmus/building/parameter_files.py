@@ -19,6 +19,7 @@ from ..fmu import Fmu
 from ..names import RENAMED, meant
 from ..toml_file import toml_entries
 from ..unit_conversion import quantity
+from ..written_numbers import real
 from .estimates import SHEET
 from .one_car import MEASURED, of_one_car
 
@@ -210,6 +211,10 @@ def _values(
             if len(problems) == MOST_PROBLEMS:
                 problems.append("there may be more")
                 break
+    usual = EVERY["WheelSpeedCan"].block.Parameters._field_defaults
+    shortest, longest = (values.get(name, usual[name]) for name in ("d_min", "d_max"))
+    if shortest > longest:
+        problems.append(f"d_min = {shortest:g} s is longer than d_max = {longest:g} s")
     if problems:
         raise ParameterFileError("\n".join(problems))
     return values
@@ -253,6 +258,8 @@ def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> A
 
 def _quantity(name: str, text: str, unit: str) -> float:
     try:
+        if unit and real(text) is not None:
+            raise ParameterFileError(f'{name} = "{text:.40}": a number in {unit} stands without quotes')
         if unit:
             return quantity(text, unit)
         reason = "must be a finite number"

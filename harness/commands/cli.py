@@ -310,7 +310,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command_line.words.set(words)
     reopen_closed_streams()
     if isinstance(sys.stdout, TextIOWrapper):
-        sys.stdout.reconfigure(line_buffering=True)  # who reads a pipe need not wait for the end either
+        # who reads a pipe need not wait for the end either, and not every terminal has a middle dot
+        sys.stdout.reconfigure(line_buffering=True, errors="replace")
     try:
         with stoppable(), unswallowed(), named_stdout():
             try:

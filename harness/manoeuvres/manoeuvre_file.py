@@ -150,6 +150,8 @@ def _number(key: str, value: Any, unit: str) -> float:
     """A finite number in SI units, of a number or a text with a unit."""
     if isinstance(value, str):
         return _converted(key, value, unit)
+    if isinstance(value, dict):
+        raise ManoeuvreError(f"{key} is one part: parts stand in a list, {key} = [{{...}}]")
     if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
         raise ManoeuvreError(
             f"{key} = {plain(repr(value), 60)}: it must be a finite number of {unit}, or a text such as "

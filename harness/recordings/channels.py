@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..base.collected_warnings import warn_once
 from ..base.plain_text import plain
 from .clock_times import EXAMPLES, Clock
 from .column_choice import Choice, Chooser, doubled
@@ -23,6 +24,13 @@ LEAST = 2
 
 LONGEST_CELL = 100
 """Characters of a cell that are shown."""
+
+
+FOOTER = 20
+"""Rows without a time above the first one and below the last one, that a logger may write."""
+
+LATEST = 1.0
+"""Time in s that a channel may end before the times do, without a word."""
 
 
 class Lack(NamedTuple):
@@ -201,6 +209,20 @@ class Channels:
         within = range(kept[0], kept[-1]) if len(kept) else ()
         odd = {k: text for k, text in samples.unreadable.items() if k in within}
         breaks = self._unreadable(column, samples.where, odd, kept, time, f", nor a time such as {EXAMPLES}")
+        first, last = there[[0, -1]].tolist()
+        for begin, end, rows, of_cut in (
+            (-inf, float(time[first]), range(first), self._cut.begin),
+            (float(time[last]), inf, range(last + 1, len(time)), self._cut.end),
+        ):
+            if of_cut is None and len(rows) > FOOTER:
+                text = samples.unreadable.get(rows[0])
+                odd_time = (
+                    f"{self.path}, {samples.where(rows[0])}: {column.heading} has no value"
+                    if text is None
+                    else not_finite(self.path, samples.where(rows[0]), column, plain(text, LONGEST_CELL))
+                )
+                problem = f"{odd_time}, nor has it in the {len(rows) - 1} rows below; a footer has {FOOTER} at most"
+                breaks.append(Break(begin, end, problem))
         return Rows(time, since, column.heading, breaks)
 
     def _inside(self, time: np.ndarray, begin: Clock | None) -> np.ndarray:
@@ -249,6 +271,11 @@ class Channels:
         ]
         lacking = {code: np.flatnonzero(written == code) for code in np.unique(written[is_code]).tolist()}
         lacking |= {None: found.filled[~is_code[found.filled]]}
+        if not drawn and len(kept) and time[-1] - time[kept[-1]] > LATEST:
+            until, rest = typed(float(time[kept[-1]])), len(time) - 1 - int(kept[-1])
+            warn_once(
+                f"{self.path}: {column.heading} has no value after {until} s, in {rest} samples; they are left out"
+            )
         lacks = [Lack(code, time[at], where(at[0])) for code, at in lacking.items() if len(at)]
         time = time[kept] if drawn else spread(time[kept])
         if not drawn and len(once := _not_twice(time, found.values[kept])) < len(time):

@@ -40,6 +40,8 @@ FOLLOWED = Threshold(
     0.3, "m/s", "speed error, rms, of a drive that is followed", "0.56 km/h at most in 200 simulated drives"
 )
 
+QUICKEST = Threshold(30.0, "m/s2", "change of speed over all of a recording", "tyres of race cars hold 3 g with wings")
+
 KMH, MS, WEAK = 3.6, 1e-3, (4.0, 16.0, 64.0, 256.0, 1000.0)
 """Factors on speed, time and torque that are tried. Those on a torque that never reaches FORCE leave no ratio out."""
 
@@ -86,6 +88,12 @@ SLOW_TIME = Rule(
     f"correlation less than {TOGETHER:g}, but that and the right ratio in ms; {SHORTEST / MS:g} s between samples",
     "as ratio of torque",
 )
+FAST_TIME = Rule(
+    "time too short",
+    "s called ms, or days called s: the car gains or loses speed faster than tyres can",
+    f"more than {QUICKEST:g} m/s2 from the least to the largest speed, over the whole recording",
+    QUICKEST.source,
+)
 FOLLOWING = Rule(
     "following",
     "after the drive: a recorded speed that the simulated car does not keep",
@@ -93,7 +101,7 @@ FOLLOWING = Rule(
     f"the force along the road is corrected until 0.36 km/h are reached; {FOLLOWED.source}",
 )
 
-RULES = (*CHANNEL_RULES, RATE, CAPPED, SIGN, RATIO, OTHER, FAST, SLOW_TIME, FOLLOWING)
+RULES = (*CHANNEL_RULES, RATE, CAPPED, SIGN, RATIO, OTHER, FAST, SLOW_TIME, FAST_TIME, FOLLOWING)
 """All that is looked for."""
 
 
@@ -103,9 +111,17 @@ def of_drive(drive: Drive, car: Car, T_max: float) -> list[Finding]:
     Args:
         T_max: largest torque of its motor in N.m.
     """
-    motion = list(unbalanced(drive, car))
-    rate = [] if any(finding.rule is SLOW_TIME for finding in motion) else slow_sampling(drive)
+    motion = list(too_short(drive)) or list(unbalanced(drive, car))
+    rate = [] if any(finding.rule in (SLOW_TIME, FAST_TIME) for finding in motion) else slow_sampling(drive)
     return [*of_channels(drive.channels.values()), *rate, *beyond_T_max(drive, T_max), *motion]
+
+
+def too_short(drive: Drive) -> Iterator[Finding]:
+    """Times in which no car changes its speed so much."""
+    lasts, change = float(np.ptp(drive.time)), float(np.ptp(drive.v))
+    if change > QUICKEST * lasts:
+        odd = f"lasts {lasts:.3g} s, in which the speed changes by {change:.3g} m/s: its unit looks wrong"
+        yield Finding(FAST_TIME, drive.clock, float(drive.time[0]), odd)
 
 
 def slow_sampling(drive: Drive) -> Iterator[Finding]:

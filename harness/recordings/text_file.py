@@ -17,7 +17,7 @@ from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_C
 from ...fmus.unit_conversion import converts, factor
 from ..base.collected_warnings import warn_once
 from ..base.plain_text import plain
-from .cells import SPELLINGS, TRUTHS, is_missing, numbers
+from .cells import SPELLINGS, TRUTHS, is_missing, numbers, unquoted
 from .clock_times import seconds
 from .dialect import Dialect, dialect_of
 from .headings import split
@@ -172,12 +172,24 @@ class TextFile:
             names &= column == self._dialect.names[place] if place < len(self._dialect.names) else False
         digits = [any(map(DIGIT.search, row)) for row in zip(*cells.values(), strict=True)]
         kept = np.array(digits) & ~names & ~np.array([*map(self._dialect.is_note, lines)])
+        for k in np.flatnonzero(~np.array(digits) & ~names):
+            self._require_no_other_names(lines[k], int(at[k]))
         for place, column in cells.items():
             if self._is_clock(place):
                 values[place] = column[kept]
             else:
                 values[place], unreadable[place] = numbers(column[kept].tolist(), self._dialect.decimal)
         return Piece(at[kept], values, unreadable)
+
+    def _require_no_other_names(self, line: str, number: int) -> None:
+        """Refuses a second line of names with others than those above, as where two recordings stand in a file."""
+        found = [unquoted(cell.strip()) for cell in line.split(self._dialect.separator)]
+        names = self._dialect.names
+        if found != list(names) and sum(name in found for name in names if name) > 1:
+            raise RecordingError(
+                f"{self.path}, line {number} names other columns than line {self._dialect.names_line}: "
+                f"{plain(line, LONGEST_CELL)}; give each recording a file of its own"
+            )
 
     def _all_numbers(self, lines: Sequence[str], places: Sequence[int], widest: int) -> dict[int, np.ndarray] | None:
         """The numbers, found all at once, NaN where there is none; None if something else is, or may be, among them, as

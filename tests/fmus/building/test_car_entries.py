@@ -78,7 +78,7 @@ def test_a_car_has_all_its_entries() -> None:
     "entries, message",
     [
         ({"ks": 30000.0}, "ks is not known; did you mean k_s"),
-        ({"C": "150"}, "C = '150': it must be a number and a unit"),
+        ({"C": "150"}, 'C = "150": a number in N.m/rad stands without quotes'),
         ({"m": True}, "m = True: it must be a finite number"),
         ({"T_max": -5.0}, "T_max = -5: MotorTorqueLoop takes 1 to 2000 N.m"),
         ({"k_d": 2.0}, "k_d does not belong here: "),

@@ -52,6 +52,12 @@ def test_a_vehicle_file_names_what_belongs_to_the_car(written: Callable[[str], P
     assert all(type(value) is float for value in values.values())
 
 
+@pytest.mark.parametrize("text", ["d_min = 0.026", "d_min = 0.03\nd_max = 0.029"])
+def test_the_shortest_delay_is_not_longer_than_the_longest(written: Callable[[str], Path], text: str) -> None:
+    assert " s is longer than d_max = " in refusal(read_vehicle, written(text))
+    assert read_vehicle(written("d_min = 0.025")) == {"d_min": 0.025}
+
+
 def test_a_file_of_gains_names_what_is_set_in_the_controller(written: Callable[[str], Path]) -> None:
     assert read_parameters(written("k_d = 2.5\nT_take_max = 40\n")) == {"k_d": 2.5, "T_take_max": 40.0}
     stored = read_parameters(ROOT / "models" / "controller" / "gains.toml")
@@ -90,7 +96,7 @@ def test_every_parameter_belongs_into_one_of_the_files_or_to_a_run(written: Call
         ("rotor = 0.05", "rotor is not known; did you mean J_1"),
         ("m = '1887 1/min'", "m = '1887 1/min': it is in 1/min, which does not convert into kg"),
         ("inertia = 0.3", "inertia is not known; did you mean J_1 or J_2 or J_w?"),
-        ("J_1 = '0.09'", "J_1 = '0.09': it must be a number and a unit; a number alone is in kg.m2"),
+        ("J_1 = '0.09'", 'J_1 = "0.09": a number in kg.m2 stands without quotes'),
         ("J_1 = true", "J_1 = True: it must be a finite number"),
         ("J_1 = [0.09]", "J_1 = [0.09]: it must be a finite number"),
         ("J_1 = nan", "J_1 = nan: it must be a finite number"),

@@ -265,6 +265,21 @@ HABITS: dict[str, Habit] = {
     "a last number as short as others are": Habit(
         text(lambda k: ",".join(f"{float(cell):g}" for cell in cells(k)), below="6.1,36.5,4").content
     ),
+    "a footer of rows": text(below="err,1,2\n" * 20),
+    "no time in the last rows": text(
+        below="err,1,2\n" * 21, refused=r"line 63: Time .* has no value, nor has it in the 20 rows below; .* --to 6$"
+    ),
+    "a unit in the last times": text(
+        lambda k: plain(k).replace(",", "s,", 1) if k > 30 else plain(k), refused=r"3\.1s is not a finite number, nor"
+    ),
+    "another decimal in the first rows": text(
+        lambda k: german(k) if k > 30 else ";".join(cells(k)),
+        ";".join(NAMES),
+        refused=r"3,1 \(the decimal of this file is a point\) is not .* in the 29 rows below; .* --to 3$",
+    ),
+    "other names in the middle": text(
+        at(30, ",".join((NAMES[0], NAMES[2], NAMES[1]))), refused=r"line 32 names other columns than line 1: Time"
+    ),
     "a last line without an end": Habit(text().content.rstrip(b"\n")),
     "a footer": text(below="End of file\n"),
     "a footer with numbers": text(below="Min,0,-35\nMax,50,125\n"),

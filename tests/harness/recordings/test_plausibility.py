@@ -42,12 +42,14 @@ from driveline.harness.recordings.plausibility import (
     FOLLOWED,
     MS,
     OSCILLATION,
+    QUICKEST,
     RULES,
     SHORTEST,
     SLOWEST,
     UNABLE,
     not_followed,
     of_drive,
+    too_short,
 )
 from driveline.harness.recordings.source import RecordingError
 from tests import ROOT
@@ -198,6 +200,13 @@ def test_a_code_is_found_only_far_from_all_other_values(code: float) -> None:
         written = np.append(others, [code, code])
         assert coded(written).tolist() == [False] * 50 + [expected] * 2
         assert not coded(1.37 * written).any(), "it is no code"
+
+
+def test_a_car_whose_speed_changes_faster_than_tyres_can_is_one_of_another_unit_of_time(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    for lasts, found in ((0.99 * 10.0 / QUICKEST, ["time too short"]), (1.01 * 10.0 / QUICKEST, [])):
+        path.write_text("t [s],v [m/s],T [Nm]\n" + "".join(f"{0.25 * k * lasts},{2.5 * k},1\n" for k in range(5)))
+        assert [finding.rule.name for finding in too_short(read_drive(path))] == found
 
 
 def test_a_number_that_is_nearly_0_is_a_value_like_others() -> None:
@@ -420,7 +429,7 @@ def test_all_samples_that_are_odd_are_marked_or_many_of_them(count: int) -> None
 def test_every_rule_is_found_by_something_and_has_a_name_of_its_own() -> None:
     names = [rule.name for rule in RULES]
     assert len(set(names)) == len(names)
-    assert {rule for _, rule, _ in SPOILED.values()} | {"cut off", "following", "hole"} == set(names)
+    assert {rule for _, rule, _ in SPOILED.values()} | {"cut off", "following", "hole", "time too short"} == set(names)
     rooms = (*vars(plausibility).values(), *vars(channel_rules).values())
     declared = {id(each) for each in rooms if isinstance(each, Rule)}
     assert declared == {id(rule) for rule in RULES}
