@@ -172,7 +172,7 @@ class TextFile:
             names &= column == self._dialect.names[place] if place < len(self._dialect.names) else False
         digits = [any(map(DIGIT.search, row)) for row in zip(*cells.values(), strict=True)]
         kept = np.array(digits) & ~names & ~np.array([*map(self._dialect.is_note, lines)])
-        for k in np.flatnonzero(~np.array(digits) & ~names):
+        for k in np.flatnonzero(~np.array(digits) & ~names).tolist():
             self._require_no_other_names(lines[k], int(at[k]))
         for place, column in cells.items():
             if self._is_clock(place):

@@ -33,6 +33,10 @@ SHORTEST = 0.2
 """s that a run must have lasted that an FMU has ended: a swing is the peak to peak within so long."""
 
 
+MOSTLY = 0.5
+"""Share of a run without damping that is told."""
+
+
 def simulate(
     manoeuvre: Manoeuvre, settings: Settings | NameOrFile | None = None, **changes: Unpack[Changes]
 ) -> Results:
@@ -92,22 +96,22 @@ def simulate(
         warn_once(f"{results.ended} of {manoeuvre.duration:g} s, in {manoeuvre.name} {damping}: it has no metrics")
     told = {name.partition(".")[2]: value for name, value in given.items() if name.startswith("controller.")}
     results.frequency = made.frequency or own_frequency(told) or frequency_of_plant(made)
-    if made.control and "controller.cause" in (results.dtype.names or ()):
-        _warn_of_fallback(results, f"{manoeuvre.name} on {made.plant_name}")
+    if made.control:
+        _warn_of_fallback(results, system, f"{manoeuvre.name} on {made.plant_name}")
     return results
 
 
-def _warn_of_fallback(results: Results, run: str) -> None:
-    """Says that the control let go for most of a run, and why."""
-    from ...models.controller.causes import FAILURES  # all equations, which a run does not need
-    from ...models.controller.supervision import FALLBACK
-
-    cause = results["controller.cause"][results["controller.status"] == FALLBACK]
-    if len(cause) > 0.5 * len(results):
-        found = [row for row in FAILURES if row.number == np.bincount(cause.astype(int)).argmax()]
-        why = f", {found[0].word}: {found[0].finding}" if found else ""
+def _warn_of_fallback(results: Results, system: System, run: str) -> None:
+    """Says that the control let go for most of a run, and for which cause, if the controller tells."""
+    variables = fit(system).interfaces["controller"].variables
+    types = (variables[name].declaredType for name in ("status", "cause") if name in variables)
+    items = [[(int(item.value or 0), str(item.name)) for item in of.items or ()] for of in types if of]
+    fallback = [number for number, word in items[0] if word == "fallback"] if len(items) > 1 else []
+    cause = results["controller.cause"][np.isin(results["controller.status"], fallback)].astype(int) if fallback else []
+    if len(cause) > MOSTLY * len(results):
+        why = dict(items[1]).get(int(np.bincount(cause).argmax()))
         share = 100.0 * len(cause) / len(results)
-        warn_once(f"{run}: the damping did not act in {share:.0f} % of the run (status fallback{why})")
+        warn_once(f"{run}: the damping did not act in {share:.0f} % of the run (status fallback, cause {why})")
 
 
 def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:

@@ -113,3 +113,16 @@ def test_how_a_car_comes_to_rest_does_not_depend_on_the_communication_step(nativ
     )
     assert coarse.end_swing == pytest.approx(fine.end_swing, rel=0.01)
     assert coarse.gear_torque_rms == pytest.approx(fine.gear_torque_rms, rel=1e-3)
+
+
+@pytest.mark.parametrize(("i", "said"), [(5.0, True), (9.0, False)])
+def test_a_damping_that_does_not_act_is_said_with_its_cause(
+    native: Path, caplog: pytest.LogCaptureFixture, i: float, said: bool
+) -> None:
+    """The gear ratio of the car is another one than the controller knows."""
+    where = {"folder": native.parent, "build": "native"}
+    simulate(MANOEUVRES["tipin15"], parameters={"plant.i": i}, **where)
+    simulate(MANOEUVRES["tipin15"], parameters={"plant.i": 5.0}, control=False, **where)
+    lines = [text for text in caplog.messages if "the damping did not act in" in text]
+    assert len(lines) == said
+    assert all(text.endswith("(status fallback, cause wheel_contradicts)") for text in lines)
