@@ -26,9 +26,11 @@ WIDEST = 118
 TEMPLATE = """\
 A car: an entry is one for all blocks that have it, in the units that are given. What stands behind a # is not set.
 `driveline car FILE.toml --all` says what is set, what follows from it or is estimated, and what stays.
-A text has its unit: "1887 kg". What is measured of a whole car at 15 km/h without control may stand here: the
-frequency of its drive train in the place of C, its damping_ratio in that of d_s, d_g, d_p, and the gap at the wheel
-from flank to flank, "2 deg", in that of phi_B."""
+A text has its unit: "1887 kg". What is measured of a whole car at 15 km/h without control may stand in the place of C,
+of d_s, d_g and d_p, and of phi_B:
+frequency = "8 Hz"    # of its drive train
+damping_ratio = 0.05  # of that
+gap = "2 deg"         # at the wheel, from flank to flank"""
 
 SOURCES = {
     "C": ", ".join(SHAFTS),

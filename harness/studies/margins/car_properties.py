@@ -123,13 +123,18 @@ def announce(
     headings = ["drive train at 15 km/h", "frequency\nHz", "damping\nratio", "with control\nHz", "damping\nratio"]
     rows = []
     for plant in found.plants:
-        damped = [f"{plant.damped.frequency:.2f}", f"{plant.damped.damping_ratio:.2f}"] if plant.damped else ["-", "-"]
+        swings = plant.damped and plant.damped.damping_ratio < 1.0
+        damped = (
+            [f"{plant.damped.frequency:.2f}" if swings else "-", f"{plant.damped.damping_ratio:.2f}"]
+            if plant.damped
+            else ["-", "-"]
+        )
         rows.append([plant.plant, f"{plant.frequency:.2f}", f"{plant.damping_ratio:.3f}", *damped])
-    print_table(plain_table(f"control: {gains}; - where there is none, or the loop is not stable", headings, rows))
+    print_table(plain_table(f"control: {gains}; - where there is none, or no swing, or no stable loop", headings, rows))
     print(
         f"with control: {MEANT}\n"
         f"backlash at the wheel: {found.gap:.2f} degrees from flank to flank\n"
-        f"authority: the control takes up to {found.taken:g} N·m from the demand and adds up to {found.added:g} N·m, "
+        f"authority: the control takes up to {found.taken:.3g} N·m from the demand and adds up to {found.added:.3g}, "
         f"of T_max = {found.T_max:g} N·m\n"
-        f"at the wheels: {found.wheel_torque:.4g} N·m by all of the motor, which is {found.acceleration:.2f} m/s²"
+        f"at the wheels: {found.wheel_torque:.0f} N·m by all of the motor, which is {found.acceleration:.2f} m/s²"
     )

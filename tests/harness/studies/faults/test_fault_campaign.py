@@ -1,4 +1,4 @@
-"""What a campaign draws and judges. That workers change nothing is tested with those that share its cases."""
+"""What a campaign draws and judges; tests/harness/simulation/test_many_runs.py has its workers."""
 
 import shutil
 from collections import Counter
