@@ -17,7 +17,7 @@ from driveline.fmus.building.car_entries import (
     template,
     vehicle_text,
 )
-from driveline.fmus.building.one_car import FOLLOW, of_one_car
+from driveline.fmus.building.one_car import FOLLOW, MEASURED, of_one_car
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
 from driveline.fmus.toml_file import toml_entries
@@ -122,6 +122,9 @@ def test_what_is_written_as_a_vehicle_file_is_read_back(tmp_path: Path) -> None:
 
 def test_every_line_of_the_template_can_be_set(tmp_path: Path) -> None:
     path = tmp_path / "car.toml"
-    set_ = (line.removeprefix("# ") if " = " in line.partition(";")[0] else line for line in template().splitlines())
-    path.write_text("\n".join(set_), encoding="utf-8")
+    lines = [line.removeprefix("# ") if " = " in line.partition(";")[0] else line for line in template().splitlines()]
+    measured = [line for line in lines if line.partition(" = ")[0] in MEASURED]
+    path.write_text("\n".join(line for line in lines if line not in measured), encoding="utf-8")
     assert read_vehicle(path) == car()
+    path.write_text("\n".join(measured), encoding="utf-8")
+    assert read_vehicle(path).keys() == MEASURED.keys()
