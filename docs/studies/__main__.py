@@ -17,6 +17,7 @@ import time
 from collections.abc import Sequence
 from unittest.mock import patch
 
+from driveline.fmus.errors import BuildError
 from driveline.harness.base.errors import DrivelineError
 from driveline.harness.base.interruption import script
 from driveline.harness.loop.built_fmus import build_missing
@@ -83,7 +84,7 @@ def make(names: Sequence[str]) -> int:
         begin = _cpu_seconds()
         try:
             measured = one.measure()
-        except DrivelineError as failure:
+        except (DrivelineError, BuildError) as failure:
             print(f"[{k}/{len(names)}] {name}: not measured: {failure}", flush=True)
             code = 1
             continue
