@@ -10,8 +10,14 @@ from .operating_point import Point
 ABOUT = (0.5, 2.0)
 """Frequencies of the drive train in a loop, over the one that it has alone, between which its mode is looked for."""
 
-MEANT = "teeth in contact, the least damped mode between half and twice the frequency without control"
+MEANT = (
+    "teeth in contact, the mode that a torque of the motor shows most in, half to twice the frequency without control"
+)
 """What a drive train with control is given as."""
+
+
+LEAST = 1e-6
+"""Magnitude of a pole of a sample, below which it is a delay and swings at no frequency."""
 
 
 def is_stable(loop: LinearLoop) -> bool:
@@ -26,11 +32,16 @@ def alone(point: Point) -> Mode:
 
 
 def drive_train_mode(loop: LinearLoop, frequency: float) -> Mode:
-    """The drive train in a loop (MEANT), with the mean of samples without and with a message; without a mode about the
-    frequency (Hz) that it has alone it does not swing."""
+    """The drive train in a loop (MEANT, in the gear torque), with the mean of samples without and with a message;
+    without a mode about the frequency (Hz) that it has alone it does not swing."""
+    mean = loop.mean
+    poles, vectors = np.linalg.eig(mean.closed())
+    shown = np.abs((mean.T_gear @ vectors) * np.linalg.solve(vectors, mean.B.astype(complex)))
+    swings = (np.imag(poles) > 0.0) & (np.abs(poles) > LEAST)
+    found = zip(shown[swings], map(mode, np.log(poles[swings]) / T_S), strict=True)
     low, high = (factor * frequency for factor in ABOUT)
-    about = (each for each in modes(loop.mean) if low < each.frequency < high)
-    return min(about, key=lambda each: each.damping_ratio, default=Mode(frequency, 1.0))
+    about = ((share, each) for share, each in found if low < each.frequency < high)
+    return max(about, default=(0.0, Mode(frequency, 1.0)))[1]
 
 
 def modes(loop: LinearLoop, gain: float = 1.0) -> list[Mode]:
@@ -44,4 +55,4 @@ def modes(loop: LinearLoop, gain: float = 1.0) -> list[Mode]:
 def swinging_poles(loop: LinearLoop, gain: float = 1.0) -> np.ndarray:
     """The poles of the closed loop that swing, in 1/s, as of `modes`."""
     poles = np.linalg.eigvals(loop.closed(gain))
-    return np.log(poles[(poles.imag > 0.0) & (np.abs(poles) > 1e-6)]) / (loop.cycle * T_S)
+    return np.log(poles[(poles.imag > 0.0) & (np.abs(poles) > LEAST)]) / (loop.cycle * T_S)

@@ -7,8 +7,10 @@ import pytest
 
 from driveline.harness.design.design import design, gains_of
 from driveline.harness.design.design_weights import MOTOR, PLANT, records
+from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.studies.margins.linear_loop import linear_loop
-from driveline.harness.studies.margins.modes import modes
+from driveline.harness.studies.margins.loop_analysis import point_of
+from driveline.harness.studies.margins.modes import alone, drive_train_mode, modes
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
 from tests.harness.studies.margins.contact import rigid, swing
@@ -50,3 +52,26 @@ def test_the_undamped_drive_train_swings_as_the_reference_study_says(kmh, design
         found = modes(linear_loop(at_speed), gain=0.0)
         mode = min(found, key=lambda mode: abs(mode.frequency - expected[0]))
         assert mode == pytest.approx(expected, rel=0.02)
+
+
+def test_the_drive_train_with_control_is_the_mode_that_its_motor_moves() -> None:
+    """In this car another mode is less damped, and hardly moved: 13.1 Hz, .10."""
+    car = {
+        "m": 2639.17,
+        "r": 0.281511,
+        "i": 13.3771,
+        "J_1": 0.0352914,
+        "J_2": 0.26171,
+        "C": 52.0527,
+        "phi_B": 0.3886,
+        "c_slip": 271674.0,
+        "T_max": 130.69,
+    }
+    point = point_of(
+        "ValidationVehicle", "DampingController", loop_parameters({**car, **design(car)}, "ValidationVehicle")
+    )
+    found = drive_train_mode(linear_loop(point), alone(point).frequency)
+    assert found.frequency == pytest.approx(8.1, rel=0.02)
+    assert found.damping_ratio == pytest.approx(0.52, rel=0.05)
+    about = [each for each in modes(linear_loop(point).mean) if 0.5 < each.frequency / 6.66 < 2.0]
+    assert min(each.damping_ratio for each in about) < 0.15
