@@ -102,7 +102,7 @@ def test_the_report_of_a_replay_shows_pieces_of_the_drive(chromium: Browser, bot
     chromium.painted()
     start, end = torque.x()
     assert end - start == 6.0
-    assert torque.pixels(BLUE) > 300
+    assert torque.pixels(BLUE) > 100
     assert chromium.figure("share of the time in %").pixels(BLUE) > 100
     require_clean(page, chromium)
 
