@@ -57,6 +57,13 @@ class Dialect:
     names_line: int
     first_line: int
 
+    def names_others(self, line: str) -> bool:
+        """Whether a line among the numbers names columns too, and not the same ones."""
+        first, *rest = (unquoted(cell.strip()) for cell in line.split(self.separator))
+        found = [*filter(None, (COMMENT.sub("", first, count=1).strip(), *rest))]
+        names = [*filter(None, self.names)]
+        return found != names and sum(name in found for name in names) > 1
+
     def is_note(self, line: str) -> bool:
         """Whether a line among the numbers is a comment, or the name of an event."""
         first = line.partition(self.separator)[0]

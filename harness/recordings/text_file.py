@@ -17,7 +17,7 @@ from ...fmus.file_limits import LARGEST_NOTE, LARGEST_TEXT, LONGEST_LINE, MOST_C
 from ...fmus.unit_conversion import converts, factor
 from ..base.collected_warnings import warn_once
 from ..base.plain_text import plain
-from .cells import SPELLINGS, TRUTHS, is_missing, numbers, unquoted
+from .cells import SPELLINGS, TRUTHS, is_missing, numbers
 from .clock_times import seconds
 from .dialect import Dialect, dialect_of
 from .headings import split
@@ -183,9 +183,7 @@ class TextFile:
 
     def _require_no_other_names(self, line: str, number: int) -> None:
         """Refuses a second line of names with others than those above, as where two recordings stand in a file."""
-        found = [unquoted(cell.strip()) for cell in line.split(self._dialect.separator)]
-        names = self._dialect.names
-        if found != list(names) and sum(name in found for name in names if name) > 1:
+        if self._dialect.names_others(line):
             raise RecordingError(
                 f"{self.path}, line {number} names other columns than line {self._dialect.names_line}: "
                 f"{plain(line, LONGEST_CELL)}; give each recording a file of its own"

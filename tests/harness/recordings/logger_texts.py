@@ -277,6 +277,9 @@ HABITS: dict[str, Habit] = {
         ";".join(NAMES),
         refused=r"3,1 \(the decimal of this file is a point\) is not .* in the 29 rows below; .* --to 3$",
     ),
+    "names in the middle, as a comment": text(
+        at(30, "# " + ";".join(NAMES) + ";", german), ";".join(NAMES), above="# a drive\n"
+    ),
     "other names in the middle": text(
         at(30, ",".join((NAMES[0], NAMES[2], NAMES[1]))), refused=r"line 32 names other columns than line 1: Time"
     ),
