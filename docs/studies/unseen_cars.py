@@ -27,12 +27,12 @@ from driveline.models.comparators.speed_washout import WashoutParameters
 from driveline.models.physics.vehicle import CAR
 
 from .design_trials import mean
+from .goals import STEPS
 from .one_car import drawn, frequencies
 from .study import Cell, Column, Measured, Study, Table, cell
 
 CARS, SEED = 12, 40
 NOISE = (301, 302, 303)
-STEPS = ("tipin15", "tipin50", "tipin0", "tipout")
 
 OURS, WASHOUT = PLACES["controller"][0], "SpeedWashout"
 NONE, UNSHAPED = "no damping", "without the shape"

@@ -214,7 +214,8 @@ def _values(
     usual = EVERY["WheelSpeedCan"].block.Parameters._field_defaults
     shortest, longest = (values.get(name, usual[name]) for name in ("d_min", "d_max"))
     if shortest > longest:
-        problems.append(f"d_min = {shortest:g} s is longer than d_max = {longest:g} s")
+        place = where("d_min" if "d_min" in values else "d_max")
+        problems.append(f"{place}d_min = {shortest:g} s is longer than d_max = {longest:g} s")
     if problems:
         raise ParameterFileError("\n".join(problems))
     return values

@@ -1,5 +1,6 @@
-"""Names: what to say of one that is not known, and whether they tell plants apart."""
+"""Names: their words, what to say of one that is not known, and whether they tell plants apart."""
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TypeVar
@@ -8,6 +9,13 @@ from ...fmus.names import meant
 from .errors import DrivelineError
 
 Named = TypeVar("Named")
+
+WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d")
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name in small letters, of camel case too; a digit is a word."""
+    return [word.lower() for word in WORD.findall(name)]
 
 
 def nearest(name: str, known: Iterable[str], every: str = "known are") -> str:

@@ -4,7 +4,6 @@ Names are taken apart into words (`tqMotAct`: torque, motor, actual), which are 
 causality and unit must fit.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from json import dumps
 from typing import NamedTuple
@@ -12,6 +11,7 @@ from typing import NamedTuple
 from fmpy.model_description import ModelVariable
 
 from ...fmus.unit_conversion import converts
+from ..base.known_names import words_of
 from ..cosimulation.interface import Interface, unit_of
 from ..cosimulation.system import Port, System
 from ..loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS, PARAMETERS
@@ -133,10 +133,9 @@ def missing(proposals: Sequence[Proposal]) -> Iterator[str]:
 
 def words(name: str) -> frozenset[str]:
     """The words of a name: `tqMotAct` has torque, motor and measured."""
-    parts = re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d", name.replace("_", " ").replace(".", " "))
-    folded = [str(part).lower() for part in parts]
-    meant = {MEANINGS.get(part, part) for part in folded}
-    return frozenset(meant | {OF_BODY[part] for part in folded if part in OF_BODY})
+    parts = words_of(name)
+    meant = {MEANINGS.get(part, part) for part in parts}
+    return frozenset(meant | {OF_BODY[part] for part in parts if part in OF_BODY})
 
 
 def _alike(ours: frozenset[str], theirs: frozenset[str]) -> float:

@@ -132,9 +132,8 @@ def content(
 
 def _built_for(fits: Iterable[Fit]) -> dict[str, float]:
     """Entries of a vehicle file for the car that the plants were built for, where it is not the default one."""
-    variables = (variable for each in fits for variable in each.interfaces["plant"].variables.values())
-    starts = {v.name: float(v.start) for v in variables if v.name in DEFAULT_CAR and v.type == "Real" and v.start}
-    return {name: start for name, start in starts.items() if start != DEFAULT_CAR[name]}
+    starts = {name: start for each in fits for name, start in each.parameters({})["plant"].items()}
+    return {name: start for name, start in starts.items() if start != DEFAULT_CAR.get(name, start)}
 
 
 def _by_hand(share: float) -> dict[str, Any]:

@@ -3,14 +3,13 @@
 Nothing here is slow to import: help needs it.
 """
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 
 from ...fmus.toml_file import toml_entries
-from ..base.known_names import nearest
+from ..base.known_names import nearest, words_of
 from ..base.plain_text import plain
 from .headings import key
 from .source import RecordingError
@@ -47,13 +46,10 @@ OTHERS = "max min limit request demand desired command cmd ref reference set set
 ANOTHER = frozenset((*OTHERS.split(), "lead", "rear", "front"))
 """Words of a path before a name: that it is no measured quantity of this car, or of a part of it."""
 
-WORD = re.compile("[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
-"""Of a path, also in camel case."""
-
 
 def is_of_another(path: str) -> bool:
     """Whether a path before a name tells that it is no measured quantity of this car."""
-    return any(word.casefold().removesuffix("s") in ANOTHER for word in WORD.findall(path))
+    return any(word.removesuffix("s") in ANOTHER for word in words_of(path))
 
 
 STEPS = 3.0

@@ -37,7 +37,7 @@ def drive_train_mode(loop: LinearLoop, frequency: float) -> Mode:
     mean = loop.mean
     poles, vectors = np.linalg.eig(mean.closed())
     shown = np.abs((mean.T_gear @ vectors) * np.linalg.solve(vectors, mean.B.astype(complex)))
-    swings = (np.imag(poles) > 0.0) & (np.abs(poles) > LEAST)
+    swings = _swing(poles)
     found = zip(shown[swings], map(mode, np.log(poles[swings]) / T_S), strict=True)
     low, high = (factor * frequency for factor in ABOUT)
     about = ((share, each) for share, each in found if low < each.frequency < high)
@@ -55,4 +55,9 @@ def modes(loop: LinearLoop, gain: float = 1.0) -> list[Mode]:
 def swinging_poles(loop: LinearLoop, gain: float = 1.0) -> np.ndarray:
     """The poles of the closed loop that swing, in 1/s, as of `modes`."""
     poles = np.linalg.eigvals(loop.closed(gain))
-    return np.log(poles[(poles.imag > 0.0) & (np.abs(poles) > LEAST)]) / (loop.cycle * T_S)
+    return np.log(poles[_swing(poles)]) / (loop.cycle * T_S)
+
+
+def _swing(poles: np.ndarray) -> np.ndarray:
+    """Which poles of a cycle swing, one of each pair."""
+    return (np.imag(poles) > 0.0) & (np.abs(poles) > LEAST)
