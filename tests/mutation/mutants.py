@@ -67,6 +67,12 @@ class Mutant(NamedTuple):
             os.utime(path, ns=(when.st_atime_ns, when.st_mtime_ns))
 
 
+def not_copied(folder: str, names: list[str]) -> set[str]:
+    """What is hidden or was made, but not the package docs.site."""
+    made = {"build", "dist", "results", "site"} if Path(folder) == ROOT else set()
+    return {name for name in names if name in made or name.startswith(".") or name.endswith(".egg-info")}
+
+
 def mutants_of(file: str) -> list[Mutant]:
     """Those of a file that are known by different names, in the order of their places."""
     source = (ROOT / file).read_text(encoding="utf-8")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from covering import own, rounds
-from mutants import LEAST, Mutant, rooms, shares
+from mutants import LEAST, ROOT, Mutant, not_copied, rooms, shares
 
 ONE = Mutant("code.py", 1, 4, "x = 1.0", "1.0", "1.2")
 
@@ -30,6 +30,12 @@ def test_the_tests_of_the_file_itself_are_run_first() -> None:
         first, *others = rounds(file) or [[]]
         assert not (file.endswith(".py") and own(file)) or first == own(file)
         assert not set(first) & {test for tests in others for test in tests}
+
+
+def test_a_copy_has_all_that_tests_import_and_nothing_that_was_made() -> None:
+    tree = [".git", "build", "docs", "driveline_damping.egg-info", "site", "tests"]
+    assert not_copied(str(ROOT), tree) == {".git", "build", "driveline_damping.egg-info", "site"}
+    assert not not_copied(str(ROOT / "docs"), ["site", "studies"])
 
 
 def test_a_fault_leaves_the_file_as_it_was(tmp_path: Path) -> None:

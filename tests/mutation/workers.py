@@ -28,7 +28,7 @@ import pandas  # noqa: F401
 import pytest
 import scipy.signal  # noqa: F401
 from hypothesis import Phase, settings
-from mutants import ROOT, Mutant
+from mutants import ROOT, Mutant, not_copied
 
 settings.register_profile("mutation", deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate))
 
@@ -62,8 +62,7 @@ Task = tuple[Mutant, Sequence[Sequence[str]], Sequence[str]]
 def prepare(folder: str) -> None:
     """Gives this worker a copy of the tree to work in."""
     copy = Path(folder, str(os.getpid()))
-    ours = shutil.ignore_patterns(".*", "build", "results", "site", "*.egg-info")
-    shutil.copytree(ROOT, copy, ignore=ours, symlinks=True)
+    shutil.copytree(ROOT, copy, ignore=not_copied, symlinks=True)
     for name in ("kept", "temporary", "compiled"):
         (copy / name).mkdir()
     os.environ["TMPDIR"] = str(copy / "temporary")
@@ -186,7 +185,7 @@ def _finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
         if found is None or found in SOUND:
             return found
         if failing([found] if found else ["--collect-only", *left], same_fmus) is None:
-            SOUND.add(found)
+            SOUND.update([found] if found else [])  # other tests may not be collected without a fault
             return found
         if not found:
             return None
