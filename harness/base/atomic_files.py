@@ -108,7 +108,10 @@ def _set_aside(path: Path) -> None:
         return
     before[path] = old = path.with_name(f"{path.name}.{os.getpid()}.before.part") if path.is_file() else None
     if old is not None:
-        os.replace(path, old)
+        try:
+            os.link(path, old)  # so that one of both versions is at the path even if the process is killed
+        except OSError:  # not every file system has links
+            os.replace(path, old)
 
 
 @contextmanager

@@ -80,7 +80,7 @@ def run(args: Arguments) -> int:
         try:
             metrics = evaluate(results, manoeuvre)
         except ValueError as reason:  # the steps do not fit into the samples of the controller
-            made.tell(print, f"no metrics: {reason}", runs=[])
+            made.tell(print, f"no metrics: {reason}", runs=[], no_metrics=str(reason))
         else:
             controller = given.controller_name if given.control else WITHOUT
             outcome = Outcome(Case(given.plant_name, manoeuvre.name, controller), metrics, results)

@@ -65,11 +65,14 @@ def test_before_and_after_and_all_other_signals_are_as_they_were_sent(kind, sign
 
 
 @pytest.mark.parametrize(
-    ("signal", "rest"), [*((each, 0.0) for each in FIELD), (faults.MOTOR_SPEED, -0.49), (faults.MOTOR_SPEED, 0.49)]
+    ("signal", "delay", "rest"),
+    [
+        *((each, 8, 0.0) for each in FIELD),
+        *((faults.MOTOR_SPEED, delay, rest) for delay in (1, 2, 8) for rest in (-0.49, 0.49)),
+    ],
 )
-def test_a_late_signal_is_what_was_sent_so_long_before(signal, rest):
+def test_a_late_signal_is_what_was_sent_so_long_before(signal, delay, rest):
     """A message is late as a whole; a time between two samples counts as the nearer one."""
-    delay = 8
     out, true = passed(**fault(faults.LATE, signal, size=(delay + rest) * T_S))
     before = slice(NOW.start - delay, NOW.stop - delay)
     for name in (FIELD[signal], "counter") if signal == faults.WHEEL_SPEED else (FIELD[signal],):

@@ -1,7 +1,9 @@
 """Files are complete or absent, and as they were before where what writes several is stopped."""
 
 import multiprocessing
+import os
 from concurrent.futures import ThreadPoolExecutor
+from errno import EPERM
 from pathlib import Path
 
 import pytest
@@ -52,6 +54,41 @@ def test_what_threads_write_after_they_were_stopped_is_taken_back(tmp_path: Path
     with pytest.raises(KeyboardInterrupt):
         stopped()
     assert files(tmp_path) == before
+
+
+def test_a_file_is_there_all_the_time_in_which_it_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Even a process that is killed leaves the old one or the new one."""
+    path, replace = tmp_path / "record.json", os.replace
+    write_text("old", path)
+    found = []
+
+    def looked(old: Path, new: Path) -> None:
+        found.append(path.read_text())
+        replace(old, new)
+
+    monkeypatch.setattr(os, "replace", looked)
+    with as_before_if_stopped():
+        write_text("new", path)
+    assert found == ["old"]
+
+
+def test_where_a_file_system_has_no_links_what_is_stopped_leaves_all_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*_: Path) -> None:
+        raise OSError(EPERM, "no links here")
+
+    monkeypatch.setattr(os, "link", refused)
+    write_text("old", tmp_path / "replaced")
+
+    @as_before_if_stopped()
+    def stopped() -> None:
+        write_text("new", tmp_path / "replaced")
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    assert files(tmp_path) == {"replaced": "old"}
 
 
 def test_what_fails_leaves_what_it_wrote_before(tmp_path: Path) -> None:

@@ -321,7 +321,11 @@ def test_simulate_tells_the_metrics_of_its_run(simulate, tmp_path):
 def test_with_steps_that_miss_the_samples_of_the_controller_it_is_said_why_there_are_no_metrics(simulate):
     (code, out, _), folder = simulate("--step", "0.0015")
     assert code == 0
-    assert "no metrics: the results are 1.5 ms apart; the metrics need a whole fraction" in out
+    reason = "the results are 1.5 ms apart; the metrics need a whole fraction"
+    assert f"no metrics: {reason}" in out
+    (_, out, _), _ = simulate("--step", "0.0015", "--json")
+    document = json.loads(out)
+    assert (document["runs"], document["no_metrics"][: len(reason)]) == ([], reason)
     assert (folder / "TwoMassDriveline_tipin15_DampingController.csv").is_file()
 
 
