@@ -16,6 +16,9 @@ from ..recordings.thresholds import Threshold
 WINDOWS = (12, 40)
 """Samples of a window."""
 
+FLOOR = 24
+"""Samples of a window for the floor by frequency: long enough to show what interpolation leaves out at some of them."""
+
 LOWEST, HIGHEST = 0.4, 0.97
 """Frequencies that are looked at, over that of Nyquist: 100 to 242 Hz at 2 ms."""
 
@@ -39,6 +42,16 @@ def white_noise(x: np.ndarray, coloured: bool = False) -> float:
     """
     share = 1.0 if coloured else 0.25
     return float(np.sqrt(min(np.quantile(_between_hits(_power(x, n)), share) for n in WINDOWS)))
+
+
+def noise_floor(x: np.ndarray) -> np.ndarray:
+    """Power of the white noise in a signal by frequency, from LOWEST to HIGHEST, in the square of its unit: the same at
+    all frequencies, but for chance, if the samples are those of the sensor.
+
+    Args:
+        x: as of `white_noise`.
+    """
+    return _between_hits(_power(x, FLOOR))
 
 
 def _power(x: np.ndarray, n: int) -> np.ndarray:

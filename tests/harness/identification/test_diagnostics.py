@@ -218,6 +218,25 @@ def test_a_motor_speed_that_was_interpolated_is_named() -> None:
     assert text(diagnose_spectrum(np.repeat(sampled, 4), T_S / 4))
 
 
+@pytest.mark.parametrize("noise", [0.005, 0.03, 0.15, 0.3])
+def test_a_motor_speed_as_it_was_sampled_is_not_named_however_good_the_sensor(noise: float) -> None:
+    """Of a light motor on a soft shaft: what it does at 60 to 120 Hz is a hundred times the noise of the best one."""
+    soft = P._replace(J_1=0.03, C=60.0)
+    for seed in (1, 2):
+        omega_1 = simulated(seed, p=soft, noise=NOISE._replace(omega_1=noise)).omega_1
+        assert text(diagnose_spectrum(omega_1, T_S)) == ""
+        assert text(diagnose_spectrum(0.5 * (omega_1[1:] + omega_1[:-1]), T_S))
+
+
+@pytest.mark.parametrize("times", [1.5, 2.0, 3.0, 5.0, 10.0])
+@pytest.mark.parametrize("noise", [0.03, 0.15])
+def test_a_motor_speed_on_a_finer_raster_is_named_whatever_the_ratio(times: float, noise: float) -> None:
+    omega_1 = simulated(seed=6, noise=NOISE._replace(omega_1=noise)).omega_1
+    at = np.arange(0.0, len(omega_1) - 1, 1.0 / times)
+    assert text(diagnose_spectrum(np.interp(at, np.arange(len(omega_1)), omega_1), T_S / times))
+    assert text(diagnose_spectrum(omega_1[at.astype(int)], T_S / times))
+
+
 @pytest.mark.parametrize(("T_s", "named"), [(0.004, False), (0.002, True)])
 def test_what_the_drive_train_does_is_not_taken_for_the_noise_of_a_slow_recording(T_s: float, named: bool) -> None:
     """White noise, and ten times as much in the second quarter of the band: up to 62 Hz, and up to 125 Hz."""
