@@ -115,12 +115,13 @@ class Remembered:
 def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
     """The function of an FMU and other arguments, its results kept in files."""
 
-    def result(fmu: Any, *others: Any) -> Any:
+    def result(fmu: Any, *others: Any, **named: Any) -> Any:
         starts = [record._field_defaults for record in (fmu.block.Parameters, fmu.block.Input)]
-        asked = re.sub(" at 0x[0-9a-f]+", "", repr((function.__module__, function.__name__, fmu, starts, others)))
+        whole = repr((function.__module__, function.__name__, fmu, starts, others, named))
+        asked = re.sub(" at 0x[0-9a-f]+", "", whole)
         kept = Path("kept", md5(asked.encode(), usedforsecurity=False).hexdigest())
         if not kept.exists():
-            kept.write_bytes(pickle.dumps(function(fmu, *others)))
+            kept.write_bytes(pickle.dumps(function(fmu, *others, **named)))
         return pickle.loads(kept.read_bytes())
 
     return result
@@ -190,6 +191,7 @@ def _finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
         if not found:
             return None
         UNSOUND.add(found)
+        print(f"{found} fails here without any fault, and finds none", flush=True)
 
 
 def finders(tasks: Iterable[Task], number: int) -> Iterator[tuple[Mutant, str | None]]:
