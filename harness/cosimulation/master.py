@@ -214,8 +214,7 @@ class Loop:
             first = part.start
             while left and left[0].step < part.stop:
                 change = left.pop(0)
-                if first < change.step:
-                    yield range(first, change.step)
+                yield range(first, change.step)
                 first = change.step
                 instance = next(each for each in self.instances if each.name == change.instance)
                 instance.set_parameters({change.parameter: change.value})

@@ -14,7 +14,7 @@ import tomllib
 from collections import Counter
 from pathlib import Path
 
-from covering import own, rounds
+from covering import rounds, slow
 from mutants import drawn, mutants_of
 from workers import finders
 
@@ -38,7 +38,7 @@ def main() -> None:
     sample = [m for file in args.files for m in mutants_of(file)] if args.files else drawn(args.faults, args.seed)
     tried = [mutant for mutant in sample if mutant.known_as not in known]
     missed = []
-    for mutant, by in finders([(mutant, rounds(mutant.file), own(mutant.file)) for mutant in tried], args.workers):
+    for mutant, by in finders([(mutant, rounds(mutant.file), slow(mutant.file)) for mutant in tried], args.workers):
         says = "MISSED" if by is None else by or "cannot be imported"
         print(f"{mutant.file}:{mutant.line}: {mutant.fault}: {says}", flush=True)
         missed += [mutant] if by is None else []

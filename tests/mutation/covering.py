@@ -52,6 +52,13 @@ def own(file: str) -> list[str]:
     return [test for test in tests() if Path(test).stem == f"test_{Path(file).stem}"]
 
 
+def slow(file: str) -> list[str]:
+    """Files of tests of which the slow ones are run for what the others miss: those of a module, and that import it
+    from its room; all of the room, if there are none."""
+    path = Path(file)
+    return list(dict.fromkeys([*own(file), *naming(f"{path.parent.name}.{path.stem}")])) or room(path)
+
+
 def naming(module: str) -> list[str]:
     """Files of tests that name a module, or it with its room."""
     return [test for test, named in tests().items() if module in named]

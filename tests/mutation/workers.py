@@ -173,9 +173,9 @@ def _end_children() -> None:
             os.waitpid(child, 0)
 
 
-def finder(mutant: Mutant, rounds: Sequence[Sequence[str]], own: Sequence[str]) -> str | None:
+def finder(mutant: Mutant, rounds: Sequence[Sequence[str]], slow: Sequence[str]) -> str | None:
     """The first test that finds a fault; None if none does. Tests that fail without it are left out."""
-    for marker, some in (*(("not slow", tests) for tests in rounds), ("slow", own)):
+    for marker, some in (*(("not slow", tests) for tests in rounds), ("slow", slow)):
         if some and (found := _finder(mutant, ["-m", marker, *some])) is not None:
             return found
     return None

@@ -43,6 +43,14 @@ def test_our_own_fmus_are_sure_of_themselves(native: Path, place: str) -> None:
     assert [(each.port.variable, True) for each in proposals] == [(each.theirs, each.sure) for each in proposals]
 
 
+@pytest.mark.parametrize(("name", "proposed"), [("brake", True), ("brake_fluid", False)])
+def test_half_of_the_words_are_enough_for_a_proposal(name: str, proposed: bool, native: Path, tmp_path: Path) -> None:
+    """Of torque and brake the first has half, and with another word the second has a third."""
+    path = tampered(native / "TwoMassDriveline.fmu", tmp_path / "b.fmu", lambda xml: xml.replace("T_brake", name))
+    found = {each.port.variable: (each.theirs, each.sure) for each in draft(Interface(path), "plant")}
+    assert found["T_brake"] == (name if proposed else None, False)
+
+
 def test_what_is_not_sure_is_marked_and_what_is_missing_is_named(native: Path, tmp_path: Path) -> None:
     def change(xml: str) -> str:
         return xml.replace('name="T_ref"', 'name="command"').replace('name="T_driver"', 'name="torque_request_raw"')

@@ -123,9 +123,10 @@ def test_a_motor_torque_that_is_scaled_is_named_and_what_else_it_may_be(sign: fl
     assert f"or J_1 = 0.055 kg.m2 should be {0.055 * (1.0 + 1.001 * least):.4g}" in text(diagnose_parameters(one))
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("deviation", [1e-4, LOAD_GAIN])
-def test_a_load_torque_that_is_scaled_is_named(deviation: float) -> None:
-    least = max(LOAD_GAIN, SURELY * deviation)
+def test_a_load_torque_that_is_scaled_is_named(deviation: float, sign: float) -> None:
+    least = sign * max(LOAD_GAIN, SURELY * deviation)
     for factor, named in ((0.999, False), (1.001, True)):
         assert bool(text(diagnose_parameters(known({"g_L": deviation}, g_L=1.0 + factor * least)))) == named
 
@@ -243,6 +244,15 @@ def test_what_the_drive_train_does_is_not_taken_for_the_noise_of_a_slow_recordin
     spectrum = np.fft.rfft(np.random.default_rng(1).standard_normal(2**15))
     below = np.arange(len(spectrum)) < 0.47 * len(spectrum)
     assert bool(text(diagnose_spectrum(np.fft.irfft(np.where(below, 10.0, 1.0) * spectrum), T_s))) == named
+
+
+def test_what_is_slow_counts_as_interpolated_by_how_its_power_falls() -> None:
+    """Hits below 59 Hz, and above them noise that is white but for the last quarter of the band."""
+    spectrum = np.fft.rfft(np.random.default_rng(1).standard_normal(2**15))
+    at = np.linspace(0.0, 0.5, len(spectrum))
+    for share, named in ((0.9 * COLOURED, True), (1.1 * COLOURED, False)):
+        shape = np.where(at < 0.235, 10.0, np.where(at < 0.37, share**-0.5, 1.0))
+        assert bool(text(diagnose_spectrum(np.fft.irfft(shape * spectrum), 0.004))) == named
 
 
 def test_noise_counts_as_white_down_to_its_threshold() -> None:

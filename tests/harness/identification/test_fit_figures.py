@@ -43,6 +43,7 @@ def test_the_figure_is_in_the_units_of_the_file_and_shows_the_window(
     monkeypatch.setattr(Figure, "savefig", lambda figure, path, **_: (figures.append(figure), path.touch()))
     plot_fit(identified(), recording(), tmp_path / "run", FigureOptions("", (101.1, 101.9), ("png",)))
     (figure,) = figures
+    assert any(fit_figures.READING in " ".join(text.get_text().split()) for text in figure.texts), "what lines mean"
     assert [axes.get_ylabel().replace("\n", " ") for axes in figure.axes] == [
         "motor speed in rpm",
         "difference in rpm",

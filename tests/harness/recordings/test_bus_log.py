@@ -204,6 +204,9 @@ TEXTS = {
     "ASC, decimal comma": asc(CLASSIC, [f"{0.01 * k:.6f}".replace(".", ",") for k in range(100)]),
     "ASC, BOM": "\ufeff" + asc(CLASSIC),
     "ASC, no date": asc(CLASSIC).partition("\n")[2],
+    "ASC, a date that nobody can read, and a late frame": asc(CLASSIC)
+    .replace("Mon Jan", "Some Day")
+    .replace("\n   0.06", "\n   0.045 1  101             Rx   d 1 00\n   0.06", 1),
     "ASC, nothing but the base": "base hex timestamps absolute\n" + asc(CLASSIC).partition("logged\n")[2],
     "ASC, comments above": "// of a tool\n" + asc(CLASSIC),
     "ASC, frames by name": asc(CLASSIC.replace(" 100 ", " Motor ") + "  ID = 256"),

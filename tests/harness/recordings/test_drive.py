@@ -71,7 +71,11 @@ def test_it_is_known_how_the_file_writes_speed_and_torque(write):
         ),
         (
             "Time [s],Velocity,Elevation [m],Motor Torque [Nm]",
-            r"Velocity has no unit; .* with --column v='Velocity \[km/h\]'",
+            r"Velocity has no unit; write one into the heading, as in [^(]*, or .* with --column v='Velocity \[km/h\]'",
+        ),
+        (
+            "Time,Velocity [km/h],Elevation [m],Motor Torque [Nm]",
+            r"Time has no unit; .* \(a time of day needs none, such as .*\), or give it with --column time='Time",
         ),
         ("Time [s],Speed [m/s],x,Speed [m/s],Torque [Nm]", r"2 columns are called Speed \[m/s\]; rename all but one"),
     ],

@@ -209,6 +209,22 @@ def test_a_car_whose_speed_changes_faster_than_tyres_can_is_one_of_another_unit_
         assert [finding.rule.name for finding in too_short(read_drive(path))] == found
 
 
+def test_reserved_are_the_last_two_integers_of_each_width_with_and_without_a_sign() -> None:
+    assert {254.0, 255.0, 126.0, 127.0, -127.0, -128.0, 32766.0, -32767.0} <= RESERVED
+    assert not {253.0, 256.0, 125.0, 128.0, -126.0, -129.0} & RESERVED
+
+
+@pytest.mark.parametrize(("last", "found"), [(169.0, True), (170.0, False)])
+def test_a_code_is_more_than_half_of_the_range_away(last: float, found: bool) -> None:
+    """255 is 86 from 169, whose half is 84.5, and 85 from 170, whose half it is."""
+    assert coded(np.append(np.arange(last + 1.0), 255.0)).any() == found
+
+
+def test_the_resolution_is_that_of_the_column_however_few_its_values_are() -> None:
+    assert coded(0.3 * np.append(np.arange(12.0), 254.0)).tolist() == [False] * 12 + [True]
+    assert not coded(np.append(0.3 * np.arange(12.0), 0.29 * 254.0)).any(), "no multiple of .3"
+
+
 def test_a_number_that_is_nearly_0_is_a_value_like_others() -> None:
     assert not coded(np.array([0.0, 1e-310, 1.0])).any()
 

@@ -255,6 +255,12 @@ def test_each_part_of_a_table_says_what_its_rows_are(monkeypatch, capsys):
     assert [line[1] for line in lines] == ["5", "15"] * (len(lines) // 2)
 
 
+def test_no_heading_is_broken_where_a_table_is_shown_in_parts(monkeypatch, capsys):
+    headings = [f"time of run {k}" for k in range(10, 22)]
+    lines = _on_a_terminal(60, plain_table("times", ["car", *headings], [["van", *"1" * 12]]), monkeypatch, capsys)
+    assert all(any(heading in line for line in lines) for heading in headings)
+
+
 def test_a_terminal_that_is_wide_enough_shows_a_table_whole(monkeypatch, capsys):
     whole = printed(runs_table([OFF, ON])).splitlines()
     assert _on_a_terminal(max(map(len, whole)), runs_table([OFF, ON]), monkeypatch, capsys) == whole

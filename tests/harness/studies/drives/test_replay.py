@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import driveline
-from driveline.harness.base.errors import MissingExtra, WiringError
+from driveline.harness.base.errors import DrivelineError, MissingExtra, WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.cosimulation.system import Connection
@@ -260,6 +260,17 @@ def test_a_demand_is_not_held_for_less_than_a_step(load, short_drive):
     for held in (0.999 * STEP_SIZE, 1e-300, float("nan")):
         with pytest.raises(WiringError, match=r"it must be 0\.001 s or more"):
             drive(track, load, F, held)
+
+
+def test_a_drive_is_as_long_as_a_swing_is_looked_for_in(settings, load):
+    def driven(duration):
+        t = np.array([0.0, duration])
+        track = Track("short", duration, t, *np.broadcast_to([[10.0], [20.0], [0.0]], (3, 2)))
+        return replay(track, load, {"DampingController": settings})
+
+    with pytest.raises(DrivelineError, match=r"short: the recording lasts 0\.199 s; at least 0\.2 s are needed"):
+        driven(0.199)
+    assert len(driven(0.2)) == 2
 
 
 def test_figure_and_signals_every_10_ms_are_written(replayed):

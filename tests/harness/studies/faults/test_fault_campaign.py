@@ -20,7 +20,7 @@ from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults import evidence, fault_catalogue
 from driveline.harness.studies.faults.fault_campaign import campaign, outcome, table
 from driveline.harness.studies.faults.fault_cases import PLANS, SITUATIONS, Case, Fault, case
-from driveline.harness.studies.faults.fault_catalogue import FRAME, KINDS, LATE, LOCK, NOTHING, SPIN
+from driveline.harness.studies.faults.fault_catalogue import FRAME, KINDS, LATE, LOCK, NOTHING, SPIN, WHEEL_SPEED
 from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
 from driveline.harness.studies.faults.judges import JUDGES
 from driveline.models import signal_faults
@@ -28,6 +28,10 @@ from driveline.models.controller import supervision
 from tests.foreign import tampered
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
+
+
+def test_whatever_happens_to_the_wheel_speed_alone_the_damping_has_to_go_on():
+    assert all(kind.tolerable for kind in KINDS.values() if kind.signal == WHEEL_SPEED)
 
 
 def test_sizes_are_drawn_on_both_sides_and_nothing_goes_wrong_with_nothing():

@@ -19,9 +19,11 @@ from driveline.harness.studies.drives.replay_report import PIECE, WHOLE, _densit
 from driveline.harness.studies.faults.fault_report_html import _ratio
 from driveline.harness.studies.faults.judges import JUDGES
 from driveline.harness.views.page import metric_dots
+from driveline.harness.views.page.compared_runs import run_panels
 from driveline.harness.views.page.figures import figure
 from driveline.harness.views.page.report import Section, write_report
 from driveline.harness.views.panels import Axis, Curve, Points
+from driveline.harness.views.signal_lines import WITHOUT, looks_of
 from tests.harness.views.page.test_report_page import PROVENANCE
 
 
@@ -30,6 +32,23 @@ def test_the_verdict_of_a_comparison_names_the_controller_and_the_run_in_which_i
     assert text.startswith("Damping by SpeedWashout lowers the oscillation of the gear torque (rms) in 2 of 3")
     assert text.endswith("runs, to 50 % in the median and to 120 % where it helps least (run 1).")
     assert verdict({"a": np.nan}, "Mine") == "No run with Mine has an oscillation that can be compared."
+
+
+def test_curves_of_each_run_look_as_that_run_does_and_the_others_as_they_are_declared() -> None:
+    names = (
+        "controller.T_driver",
+        "controller.T_ref",
+        "plant.T_gear",
+        "plant.omega_1",
+        "plant.omega_2",
+        "plant.a_body",
+    )
+    runs = {name: np.zeros(5, [(each, float) for each in ("time", *names)]) for name in (WITHOUT, "ours", "theirs")}
+    for panel in run_panels(runs):
+        for curve in (part for part in panel.parts if isinstance(part, Curve)):
+            of = next((name for name in ("ours", "theirs") if name in curve.label), None)
+            look = looks_of(runs)["ours" if of is None else of][0]
+            assert (curve.color == look) == (of is not None and not curve.label.startswith("wheels")), curve.label
 
 
 def ride(rough: float, size: float) -> np.ndarray:
