@@ -70,10 +70,11 @@ def near(path: Path) -> list[str]:
 
 
 def room(path: Path) -> list[str]:
-    """Files of the tests in the folder that belongs to that of a module, or to the one above."""
-    folder = Path("tests", path.parent)
-    folder = folder if (ROOT / folder).exists() else folder.parent
-    return [test for test in tests() if Path(test).parent == folder]
+    """Files of tests in the folder that belongs to that of a module, and in those above it."""
+    folders = [
+        folder for folder in (Path("tests", path.parent), *Path("tests", path.parent).parents) if folder.parts[1:]
+    ]
+    return [test for folder in folders for test in tests() if Path(test).parent == folder]
 
 
 @cache
