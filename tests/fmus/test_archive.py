@@ -56,6 +56,12 @@ def test_what_does_not_fit_is_told_with_its_file_and_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_folder_that_is_not_there_is_made_with_those_above_it(tmp_path: Path) -> None:
+    for _ in range(2):
+        write_archive(FILES, tmp_path / "of" / "a" / "car.fmu")
+    assert [path.name for path in tmp_path.rglob("*.*")] == ["car.fmu"]
+
+
 def test_what_is_no_regular_file_is_not_replaced(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.fmu")
     with pytest.raises(FileExistsError, match="is no file and is not replaced"):

@@ -62,6 +62,8 @@ REAL = [
     ("block.py", "class A:\n    b: int = 1\n    c: int = 2", [("b", "d"), ("int", "float")]),
     ("block.c", C, [("0.5", "0.51"), ("x->twist", "x->phi"), ("C * ", "C + "), ("*at", "*x"), ("double C", "float C")]),
     ("block.c", C, [("return C", "return twist"), ("k < 3", "k <= 3"), ("&twist", "&x")]),
+    ("block.c", C + "static int turns;\n" + C.replace("torque", "twice"), [("turns", "rounds")]),
+    ("block.c", "int f(int a)\n{\n    int b = g(a, c);\n    return b;\n}", [("c)", "d)"), ("(a, c", "(c, c")]),
     ("block.c", "struct A { double a; double b; };", [("double a; double b;", "double b; double a;")]),
     ("block.c", '#define A 1\nconst char *b = "/* c */";', [("A 1", "A 2"), ("/* c */", "/* d */")]),
     ("block.toml", "k_d = 1.5\n", [("1.5", "1.51"), ("k_d", "k_e")]),

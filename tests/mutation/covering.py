@@ -90,7 +90,7 @@ def tests() -> dict[str, set[str]]:
 @cache
 def modules() -> dict[str, set[str]]:
     """Files of the code, with the names that they import."""
-    return {file: _names(ROOT / file, r"^from \.+[\w.]*?(\w+) import") for files in rooms().values() for file in files}
+    return {file: _names(ROOT / file, r"^ *from \.+[\w.]*?(\w+) import") for files in rooms().values() for file in files}
 
 
 def _names(path: Path, pattern: str) -> set[str]:

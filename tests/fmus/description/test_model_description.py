@@ -11,11 +11,12 @@ from typing import Annotated, NamedTuple
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
+from matplotlib.axes import Axes
 
 from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.description.build_kind import BuildKind
 from driveline.fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
-from driveline.fmus.description.documentation import tables
+from driveline.fmus.description.documentation import WIDTH, picture, tables, timing
 from driveline.fmus.description.model_description import model_description
 from driveline.fmus.description.units import base_exponents
 from driveline.fmus.description.variables import interface
@@ -80,6 +81,9 @@ def test_the_plants_have_the_same_inputs_and_outputs(built):
         ("N.m/rad", {"kg": 1, "m": 2, "s": -2, "rad": -1}),
         ("N.s2/m2", {"kg": 1, "m": -1}),
         ("J/(kg.K)", {"m": 2, "s": -2, "K": -1}),
+        ("W", {"kg": 1, "m": 2, "s": -3}),
+        ("Pa", {"kg": 1, "m": -1, "s": -2}),
+        ("V/Hz", {"kg": 1, "m": 2, "s": -2, "A": -1}),
         ("1/s", {"s": -1}),
         ("1", {}),
     ],
@@ -245,3 +249,20 @@ def test_the_documentation_page_tells_of_every_variable(built, name):
     for variable in interface(FMUS[name].block):
         assert f"<td>{variable.name}</td>" in text
         assert variable.causality == "output" or math.isfinite(variable.start)
+
+
+@every_fmu
+def test_the_page_says_how_often_it_computes(name):
+    assert f" {2 if name == 'DampingController' else 1} ms" in timing(FMUS[name].block)
+
+
+def test_the_picture_has_an_arrow_for_each_input_to_the_box_and_for_each_output_from_it(monkeypatch):
+    """None of which leaves the picture."""
+    arrows = []
+    monkeypatch.setattr(Axes, "annotate", lambda _, text, head, tail, **how: arrows.append((tail[0], head[0])))
+    block = FMUS["WheelSpeedCan"].block
+    picture.__wrapped__(block)
+    inputs, outputs = arrows[: len(block.Input._fields)], arrows[len(block.Input._fields) :]
+    assert len(outputs) == len(block.Output._fields)
+    assert all(0.0 < tail < head < 0.5 * WIDTH for tail, head in inputs)
+    assert all(0.5 * WIDTH < tail < head < WIDTH for tail, head in outputs)
