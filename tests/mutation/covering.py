@@ -25,12 +25,18 @@ IN_C = {
         ("tests/fmus/native/test_fmi3.py", "tests/fmus/native/test_terminal.py"),
     ),
     **dict.fromkeys(("lanes", "lane_loop"), ("tests/harness/cosimulation/test_lanes.py",)),
+    "frames": ("tests/fmus/native/test_terminal.py",),
     **dict.fromkeys(("model_exchange", "fmi2_model_exchange"), ("tests/fmus/native/test_model_exchange.py",)),
 }
 """The tests of files of the C core that find their faults before those of the calls do."""
 
-LAST = {"models/": "tests/docs/studies/test_study.py", "fmus/description/": "tests/fmus/native/test_fmi3.py"}
-"""By folder: for models the sentinels of the studies, for descriptions what a validator says of one of FMI 3.0."""
+LAST = {
+    "models/": "tests/docs/studies/test_study.py",
+    "fmus/description/": "tests/fmus/native/test_fmi3.py",
+    "fmus/python/": "tests/fmus/native/test_same_words.py",
+}
+"""By folder: for models the sentinels of the studies, for descriptions what a validator says of one of FMI 3.0, and
+that FMUs that run Python say what native ones do."""
 
 
 def rounds(file: str) -> list[list[str]]:
@@ -90,7 +96,9 @@ def tests() -> dict[str, set[str]]:
 @cache
 def modules() -> dict[str, set[str]]:
     """Files of the code, with the names that they import."""
-    return {file: _names(ROOT / file, r"^ *from \.+[\w.]*?(\w+) import") for files in rooms().values() for file in files}
+    return {
+        file: _names(ROOT / file, r"^ *from \.+[\w.]*?(\w+) import") for files in rooms().values() for file in files
+    }
 
 
 def _names(path: Path, pattern: str) -> set[str]:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import FMUS
+from driveline.fmus.description.variables import interface
 from driveline.fmus.native.compiler import CompilerError, host_compiler
 from driveline.fmus.native.statements import SINGLE
 from driveline.fmus.target.image import FLAGS, host_program
@@ -21,6 +22,7 @@ from driveline.harness.exchange.target.comparison import responses
 from driveline.harness.exchange.target.offline_cases import Case, recorded
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
+from driveline.models.block.declaration import Enumeration
 from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK as CONTROLLER
 from tests.slow import slow
@@ -159,3 +161,10 @@ def test_only_sampled_blocks_run_on_a_target() -> None:
 def test_what_the_compiler_refuses_is_told_as_it_says_it(tmp_path: Path) -> None:
     with pytest.raises(CompilerError, match=r"wrong\.c.*\n(.*\n)*.*nothing"):
         host_program({"wrong.c": "int value(void) { return nothing; }\n"}, tmp_path)
+
+
+def test_enumerations_have_the_numbers_of_the_fmu() -> None:
+    header = target_sources(OURS, SINGLE)["damping_controller.h"]
+    listed = [v.declaration.items for v in interface(CONTROLLER) if isinstance(v.declaration, Enumeration)]
+    found = re.findall(r"DAMPING_CONTROLLER_(\w+) += (\d+),", header)
+    assert found == [(name.upper(), str(k)) for items in listed for k, (name, _) in enumerate(items, start=1)]

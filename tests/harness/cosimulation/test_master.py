@@ -1,5 +1,6 @@
 """The master: when outputs reach inputs, what time it is, what it leaves behind."""
 
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from fmpy.util import read_csv
 
 from driveline.harness.base.csv_file import write_csv
 from driveline.harness.base.errors import SimulationError, WiringError
-from driveline.harness.cosimulation.experiment import Experiment, instants
+from driveline.harness.cosimulation.experiment import Experiment, instants, memory
 from driveline.harness.cosimulation.runs import run
 from driveline.harness.cosimulation.system import Connection, Scheme, System
 from driveline.harness.loop.places import PLANTS
@@ -55,6 +56,30 @@ def test_inputs_of_every_type_may_be_constants_samples_or_functions_and_are_pass
     np.testing.assert_array_equal(results["b.b_out"][1:], ~flags[:-1])
     assert results.dtype["b.n_out"] == np.int32
     assert results.dtype["b.b_out"] == np.bool_
+
+
+@pytest.mark.parametrize("module", ["master", "loading"])
+def test_progress_is_told_of_all_steps(module, native, relay, monkeypatch):
+    """Of our own FMUs here, and of others in a process of their own."""
+    told = []
+
+    @contextmanager
+    def progress(total, label):
+        told.append((total, label))
+        yield told.append
+
+    path, own = (native / "WheelSpeedCan.fmu", {"a"}) if module == "master" else (relay, ())
+    monkeypatch.setattr(f"driveline.harness.cosimulation.{module}.progress", progress)
+    run(System({"a": path}, (), own=frozenset(own)), Experiment(0.01, label="a run"))
+    assert told[0] == (10, "a run")
+    assert told[-1] == 10 or module == "loading"
+
+
+@pytest.mark.parametrize("name", ["SC_PHYS_PAGES", "SC_PAGE_SIZE"])
+def test_a_machine_that_does_not_say_how_much_memory_it_has_has_any(name, monkeypatch):
+    assert 1e8 < memory() < 1e14
+    monkeypatch.setattr("os.sysconf_names", {name: 1})
+    assert memory() == np.inf
 
 
 def test_time_is_counted_in_whole_steps(relay):

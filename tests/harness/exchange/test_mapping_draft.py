@@ -51,6 +51,12 @@ def test_half_of_the_words_are_enough_for_a_proposal(name: str, proposed: bool, 
     assert found["T_brake"] == (name if proposed else None, False)
 
 
+def test_a_unit_that_the_fmu_does_not_tell_is_named_as_what_it_is_taken_for(theirs: Path) -> None:
+    text = as_toml(draft(Interface(theirs), "plant"), theirs.name, "plant")
+    assert 'slope = "grade"  # the FMU tells no unit, taken as rad\n' in text
+    assert 'T_mot = "tqMot"  # in N.m' in text
+
+
 def test_what_is_not_sure_is_marked_and_what_is_missing_is_named(native: Path, tmp_path: Path) -> None:
     def change(xml: str) -> str:
         return xml.replace('name="T_ref"', 'name="command"').replace('name="T_driver"', 'name="torque_request_raw"')

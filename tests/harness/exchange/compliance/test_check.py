@@ -154,6 +154,8 @@ def test_a_fault_in_the_description_of_fmi_3_is_found(fmi3, tmp_path, pattern, r
         ("resources\\model.txt", "has a backslash in its path"),
         ("resources/__pycache__/model.pyc", "leftover"),
         ("../escape.txt", "leaves the folder"),
+        ("resources/für.txt", "resources/für.txt is not plain ASCII"),
+        ("resources/a\tb.txt", "is not plain ASCII"),
         ("LICENSE.txt", "documentation/index.html is missing"),
         ("LICENSE.txt", "model.png or documentation/diagram.png is missing"),
     ],
