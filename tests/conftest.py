@@ -49,6 +49,11 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Those of this folder first, which take long, so that no worker waits for the last of them at the end."""
+    items.sort(key=lambda item: item.path.parent != Path(__file__).parent)
+
+
 @pytest.fixture
 def uncached_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
     """The compiler itself, for tests of what it makes of the same source again."""

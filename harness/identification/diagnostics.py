@@ -9,7 +9,7 @@ from ..recordings.thresholds import Threshold
 from .drive_train import Parameters, State
 from .estimator import Z_95, Found
 from .model_inputs import LATEST
-from .noise import LOWEST, noise_floor
+from .noise import ENOUGH, noise_floor
 from .prediction import Predicted
 from .priors import OF_CAR, PRIORS
 from .torque_loop import FittedLoop
@@ -48,19 +48,19 @@ OUTLIER, LONELY = (
 CROWD = 20
 """These largest."""
 
-COLOURED = Threshold(
-    0.3,
-    "1",
-    "noise of the motor speed at the frequency with least over that with most, and over those of slow samples in the "
-    "last quarter of the band over the second",
-    "0.31 and more as sampled, 0.24 and less interpolated, held or filtered",
-)
-QUIET = Threshold(
-    90.0,
-    "Hz",
-    "frequency above which only hits and noise are seen, so that the noise between the hits tells",
-    "of 360 drives with 2 ms none is named; with 4 ms the noise is looked at from 50 Hz, and 187 of the 240 with "
-    "0.03 rad/s or less are",
+COLOURED, UNEVEN = (
+    Threshold(
+        0.3,
+        "1",
+        "power of the motor speed in the last quarter of its band over that in the second",
+        "0.5 and more as sampled with a noise of 0.15 rad/s, 0.25 and less interpolated or held",
+    ),
+    Threshold(
+        0.3,
+        "1",
+        "noise of the motor speed between hits of the gear, at the frequency with least over that with most",
+        "0.31 and more of 360 drives with a noise of 0.01 to 0.15 rad/s, 0.24 and less interpolated or filtered",
+    ),
 )
 MOVED = Threshold(
     60.0,
@@ -183,20 +183,24 @@ def diagnose_outliers(predicted: Predicted, T_s: float) -> Iterator[str]:
 
 
 def is_coloured(omega_1: np.ndarray, T_s: float) -> bool:
-    """Whether the motor speed has less noise at some frequencies than at others, as what was interpolated or filtered.
+    """Whether the motor speed has less noise at high frequencies than a sensor has, as what was interpolated. Beside a
+    sensor with little noise the hits of the gear look so too, but what is between them does not. Less than ENOUGH
+    samples do not tell.
 
     Args:
+        omega_1: shape (n,).
         T_s: its sample time in s.
     """
-    floor = noise_floor(omega_1)
-    uneven = bool(floor.min() < COLOURED * floor.max())
-    if LOWEST * 0.5 / T_s >= QUIET or not uneven:
-        return uneven
+    if len(omega_1) < ENOUGH:
+        return False
     f, power = welch(np.diff(omega_1), nperseg=min(1024, len(omega_1) - 1))
     f, power = f[1:-1], power[1:-1] / np.sin(np.pi * f[1:-1]) ** 2  # of the speed, not of its differences
     lower = min(max(0.125, MOVED * T_s), 0.25)
     last, before = (float(np.median(power[(f > low) & (f < low + 0.125)])) for low in (0.375, lower))
-    return last < COLOURED * before
+    if last >= COLOURED * before:
+        return False
+    floor = noise_floor(omega_1)
+    return bool(floor.min() < UNEVEN * floor.max())
 
 
 def diagnose_spectrum(omega_1: np.ndarray, T_s: float) -> Iterator[str]:

@@ -16,8 +16,9 @@ from ..recordings.thresholds import Threshold
 WINDOWS = (12, 40)
 """Samples of a window."""
 
-FLOOR = 24
-"""Samples of a window for the floor by frequency: long enough to show what interpolation leaves out at some of them."""
+FLOOR_WINDOW, ENOUGH = 24, 100
+"""Samples of a window for the floor by frequency, in which it shows what interpolation leaves out at some of them, and
+samples for four such windows."""
 
 LOWEST, HIGHEST = 0.4, 0.97
 """Frequencies that are looked at, over that of Nyquist: 100 to 242 Hz at 2 ms."""
@@ -45,13 +46,13 @@ def white_noise(x: np.ndarray, coloured: bool = False) -> float:
 
 
 def noise_floor(x: np.ndarray) -> np.ndarray:
-    """Power of the white noise in a signal by frequency, from LOWEST to HIGHEST, in the square of its unit: the same at
-    all frequencies, but for chance, if the samples are those of the sensor.
+    """Variance that the noise in a signal would have if it were white, as each frequency from LOWEST to HIGHEST tells
+    it, shape (7,): much the same if the samples are those of the sensor, but where a ripple is.
 
     Args:
-        x: as of `white_noise`.
+        x: as of `white_noise`, of ENOUGH samples.
     """
-    return _between_hits(_power(x, FLOOR))
+    return _between_hits(_power(x, FLOOR_WINDOW))
 
 
 def _power(x: np.ndarray, n: int) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from driveline.harness.identification.diagnostics import (
     diagnose_parameters,
     diagnose_spectrum,
     diagnose_torque_loop,
+    is_coloured,
 )
 from driveline.harness.identification.drive_train import State
 from driveline.harness.identification.estimator import UNTOLD, Z_95, Found
@@ -38,6 +40,7 @@ from driveline.harness.identification.prediction import Predicted
 from driveline.harness.identification.priors import PRIORS
 from driveline.harness.identification.torque_loop import ANSWERS, FittedLoop, TorqueLoop
 from tests.harness.identification.simulated import NOISE, T_S, P, found, simulated
+from tests.together import together
 
 CAR = P._replace(g_T=1.0, g_L=1.0)
 
@@ -229,13 +232,26 @@ def test_a_motor_speed_as_it_was_sampled_is_not_named_however_good_the_sensor(no
         assert text(diagnose_spectrum(0.5 * (omega_1[1:] + omega_1[:-1]), T_S))
 
 
-@pytest.mark.parametrize("times", [1.5, 2.0, 3.0, 5.0, 10.0])
-@pytest.mark.parametrize("noise", [0.03, 0.15])
-def test_a_motor_speed_on_a_finer_raster_is_named_whatever_the_ratio(times: float, noise: float) -> None:
+@pytest.mark.parametrize(
+    ("noise", "times"), [*product([0.15], [1.5, 2.0, 3.0, 5.0, 10.0]), *product([0.03], [1.5, 3.0, 5.0, 10.0])]
+)
+def test_a_motor_speed_on_a_finer_raster_is_named_whatever_the_ratio(noise: float, times: float) -> None:
     omega_1 = simulated(seed=6, noise=NOISE._replace(omega_1=noise)).omega_1
     at = np.arange(0.0, len(omega_1) - 1, 1.0 / times)
     assert text(diagnose_spectrum(np.interp(at, np.arange(len(omega_1)), omega_1), T_S / times))
-    assert text(diagnose_spectrum(omega_1[at.astype(int)], T_S / times))
+
+
+@together("size, frequency", product([0.5, 1.0, 5.0], [0.45, 0.67, 0.9]))
+def test_the_ripple_of_a_motor_is_no_interpolation(size: float, frequency: float) -> None:
+    """Beside white noise, at frequencies over that of Nyquist."""
+    white = np.random.default_rng(2).standard_normal(5000)
+    assert not is_coloured(white + size * np.sqrt(2.0) * np.sin(np.pi * frequency * np.arange(5000)), T_S)
+
+
+@pytest.mark.parametrize(("count", "most"), [(20, 0), (99, 0), (100, 4), (500, 0)])
+def test_white_noise_is_hardly_ever_named_however_short_the_piece_is(count: int, most: int) -> None:
+    pieces = np.random.default_rng(3).standard_normal((50, count))
+    assert sum(is_coloured(piece, T_S) for piece in pieces) <= most
 
 
 @pytest.mark.parametrize(("T_s", "named"), [(0.004, False), (0.002, True)])
@@ -246,8 +262,8 @@ def test_what_the_drive_train_does_is_not_taken_for_the_noise_of_a_slow_recordin
     assert bool(text(diagnose_spectrum(np.fft.irfft(np.where(below, 10.0, 1.0) * spectrum), T_s))) == named
 
 
-def test_what_is_slow_counts_as_interpolated_by_how_its_power_falls() -> None:
-    """Hits below 59 Hz, and above them noise that is white but for the last quarter of the band."""
+def test_a_falling_spectrum_is_interpolated_where_its_noise_is_uneven_too() -> None:
+    """Hits at up to 59 Hz, and above them noise that is white but for the last quarter of the band: of slow samples."""
     spectrum = np.fft.rfft(np.random.default_rng(1).standard_normal(2**15))
     at = np.linspace(0.0, 0.5, len(spectrum))
     for share, named in ((0.9 * COLOURED, True), (1.1 * COLOURED, False)):
