@@ -50,8 +50,10 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Those of this folder first, which take long, so that no worker waits for the last of them at the end."""
-    items.sort(key=lambda item: item.path.parent != Path(__file__).parent)
+    """On several workers the tests of tests/ itself before those of its folders: they take long, and no worker should
+    wait for the last of them at the end."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        items.sort(key=lambda item: item.path.parent != Path(__file__).parent)
 
 
 @pytest.fixture

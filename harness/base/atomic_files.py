@@ -7,6 +7,7 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from errno import ELOOP, ENOLCK, ENOSPC, ENOTSUP
 from pathlib import Path
+from shutil import copy2
 
 from .interruption import unswallowed
 
@@ -107,11 +108,12 @@ def _set_aside(path: Path) -> None:
     if (before := _before.get()) is None or path in before:
         return
     before[path] = old = path.with_name(f"{path.name}.{os.getpid()}.before.part") if path.is_file() else None
-    if old is not None:
+    if old is not None:  # a copy: one of both versions is at the path even if the process is killed
+        old.unlink(missing_ok=True)  # of a killed process of the same number
         try:
-            os.link(path, old)  # so that one of both versions is at the path even if the process is killed
+            os.link(path, old)
         except OSError:  # not every file system has links
-            os.replace(path, old)
+            copy2(path, old)
 
 
 @contextmanager

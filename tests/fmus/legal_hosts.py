@@ -1,4 +1,4 @@
-"""What hosts of our FMUs may do, as a table: a test drives each FMU so from C, and the documentation prints it."""
+"""What hosts of our FMUs may do, as a table: a test drives FMUs so from C, and the documentation prints it."""
 
 from typing import Literal, NamedTuple
 

@@ -66,30 +66,30 @@ def variables(description: ModelDescription) -> list[str]:
     return [outputs, *map(str, told)]
 
 
-whether_lasting = pytest.mark.parametrize("lasting", [False, pytest.param(True, marks=pytest.mark.slow)])
+LASTING = pytest.mark.parametrize("lasting", [False, pytest.param(True, marks=pytest.mark.slow)])
 
 
-@whether_lasting
+@LASTING
 @pytest.mark.parametrize("build", ["native", "fmi3"])
 @together("name", FMUS)
 def test_every_legal_host_gets_the_numbers_of_a_plain_one(
     request: Any, program: Path, tmp_path: Path, name: str, build: str, lasting: bool
 ) -> None:
-    check(request, program, tmp_path, name, build, lasting)
+    require_same_numbers(request, program, tmp_path, name, build, lasting)
 
 
-@whether_lasting
+@LASTING
 @pytest.mark.slow
 @together("name", ["ValidationVehicle", "DampingController"])
-def test_so_does_one_of_an_fmu_that_runs_python(
+def test_every_legal_host_gets_the_numbers_of_a_plain_one_from_python_too(
     request: Any, program: Path, tmp_path: Path, name: str, lasting: bool
 ) -> None:
     """One of each kind: what answers the calls is the same for all blocks of a kind, and takes a third of a second to
     begin."""
-    check(request, program, tmp_path, name, "built", lasting)
+    require_same_numbers(request, program, tmp_path, name, "built", lasting)
 
 
-def check(request: Any, program: Path, tmp_path: Path, name: str, build: str, lasting: bool) -> None:
+def require_same_numbers(request: Any, program: Path, tmp_path: Path, name: str, build: str, lasting: bool) -> None:
     """That all HOSTS get the numbers of those that they are like."""
     path = request.getfixturevalue(build) / f"{name}.fmu"
     description = fmpy.read_model_description(str(path))

@@ -22,7 +22,7 @@ LEAST_SCORE = 0.95
 
 
 def explained() -> set[tuple[str, str, str]]:
-    """What no test can find."""
+    """What no test can find, as `Mutant.known_as`."""
     known = tomllib.loads(Path(__file__).with_name("survivors.toml").read_text(encoding="utf-8"))
     return {(file, each["line"], fault) for file, some in known.items() for each in some for fault in each["faults"]}
 

@@ -60,8 +60,10 @@ def own(file: str) -> list[str]:
 
 def slow(file: str) -> list[str]:
     """Files of tests of which the slow ones are run for what the others miss: those of a module, and that import it
-    from its room; all of the room, if there are none."""
+    from its room; if there are none those of its folder and of the folders above."""
     path = Path(file)
+    if path.suffix != ".py":
+        return [*IN_C.get(path.stem, ()), *CALLS]
     return list(dict.fromkeys([*own(file), *naming(f"{path.parent.name}.{path.stem}")])) or room(path)
 
 
@@ -76,11 +78,9 @@ def near(path: Path) -> list[str]:
 
 
 def room(path: Path) -> list[str]:
-    """Files of tests in the folder that belongs to that of a module, and in those above it."""
-    folders = [
-        folder for folder in (Path("tests", path.parent), *Path("tests", path.parent).parents) if folder.parts[1:]
-    ]
-    return [test for folder in folders for test in tests() if Path(test).parent == folder]
+    """Files of tests in the folder that belongs to that of a module, and in those above it, but not in tests/."""
+    here = Path("tests", path.parent)
+    return [test for folder in (here, *here.parents[:-2]) for test in tests() if Path(test).parent == folder]
 
 
 @cache

@@ -1,10 +1,15 @@
 """A sample is what its seed says, and a fault leaves the file as it was."""
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
-from covering import own, rounds
+from covering import CALLS, IN_C, LAST, own, rounds
 from mutants import LEAST, ROOT, Mutant, not_copied, rooms, shares
+from remembering import remembered
+
+from driveline.fmus.catalogue import FMUS
 
 ONE = Mutant("code.py", 1, 4, "x = 1.0", "1.0", "1.2")
 
@@ -30,6 +35,24 @@ def test_the_tests_of_the_file_itself_are_run_first() -> None:
         first, *others = rounds(file) or [[]]
         assert not (file.endswith(".py") and own(file)) or first == own(file)
         assert not set(first) & {test for tests in others for test in tests}
+
+
+def test_all_tests_that_are_named_exist() -> None:
+    named = [*CALLS, *LAST.values(), *(test for tests in IN_C.values() for test in tests)]
+    assert [test for test in named if not (ROOT / test.partition("::")[0]).is_file()] == []
+
+
+def test_a_result_is_computed_once_for_the_same_arguments_of_a_block_of_the_project(tmp_path: Path) -> None:
+    calls = []
+
+    def made(fmu: Any, *others: int, **named: int) -> int:
+        calls.append((others, named))
+        return len(calls)
+
+    ask, ours = remembered(made, tmp_path), FMUS["WheelSpeedCan"]
+    assert [ask(ours, 1, sends=2), ask(ours, 1, sends=2), ask(ours, 1, sends=3), ask(ours, 2)] == [1, 1, 2, 3]
+    theirs = replace(ours, block=replace(ours.block, module="their_car"))
+    assert [ask(theirs), ask(theirs)] == [4, 5]
 
 
 def test_a_copy_has_all_that_tests_import_and_nothing_that_was_made() -> None:

@@ -3,22 +3,17 @@
 import ctypes
 import math
 import os
-import pickle
-import re
 import resource
 import select
 import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from hashlib import md5
-from importlib import import_module
 from multiprocessing import get_context
 from pathlib import Path
 from runpy import run_path
-from typing import Any
 
 # slow to import and needed by every run of the tests, which inherits them
 import casadi  # noqa: F401
@@ -29,6 +24,7 @@ import pytest
 import scipy.signal  # noqa: F401
 from hypothesis import Phase, settings
 from mutants import ROOT, Mutant, not_copied
+from remembering import Remembered
 
 settings.register_profile("mutation", deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate))
 
@@ -62,15 +58,13 @@ Task = tuple[Mutant, Sequence[Sequence[str]], Sequence[str]]
 def prepare(folder: str) -> None:
     """Gives this worker a copy of the tree to work in."""
     own = Path(folder, str(os.getpid()))
-    copy, temporary = own / "tree", own / "temporary"  # what tests write lies outside, as it does elsewhere
+    copy, temporary, compiled = (own / name for name in ("tree", "temporary", "compiled"))  # tests write outside of it
     shutil.copytree(ROOT, copy, ignore=not_copied, symlinks=True)
-    for made in (temporary, copy / "kept", copy / "compiled"):
+    for made in (temporary, compiled):
         made.mkdir()
     os.environ["TMPDIR"] = str(temporary)
     tempfile.tempdir = None
-    os.environ["CC"] = str(
-        run_path(str(ROOT / "tests" / "compiling.py"))["caching_compiler"](copy / "compiled") or "cc"
-    )
+    os.environ["CC"] = str(run_path(str(ROOT / "tests" / "compiling.py"))["caching_compiler"](compiled) or "cc")
     os.chdir(copy)
     os.environ["PYTHONPATH"] = sys.path[0] = str(copy)
     os.environ["PYTHONDONTWRITEBYTECODE"], sys.dont_write_bytecode = "", False  # each run imports the same
@@ -99,38 +93,6 @@ class Watched:
         resource.setrlimit(resource.RLIMIT_CPU, (limit, resource.RLIM_INFINITY))
 
 
-class Remembered:
-    """Plugin: what no fault outside of the code of the FMUs changes is computed once by a worker, traced sources,
-    pages, and what is in the FMUs that run Python."""
-
-    def pytest_configure(self) -> None:
-        for build, names in {
-            "native": ("block_sources", "documentation"),
-            "python": ("documentation", "_resources_and_binaries"),
-        }.items():
-            packaging: Any = import_module(f"driveline.fmus.{build}.packaging")
-            for name in names:
-                setattr(packaging, name, remembered(getattr(packaging, name)))
-
-
-def remembered(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function of an FMU and other arguments, its results for blocks of the project kept in files."""
-    folder = Path("kept").resolve()
-
-    def result(fmu: Any, *others: Any, **named: Any) -> Any:
-        if not fmu.block.module.startswith("driveline."):
-            return function(fmu, *others, **named)
-        starts = [record._field_defaults for record in (fmu.block.Parameters, fmu.block.Input)]
-        whole = repr((function.__module__, function.__name__, fmu, starts, others, named))
-        asked = re.sub(" at 0x[0-9a-f]+", "", whole)
-        kept = folder / md5(asked.encode(), usedforsecurity=False).hexdigest()
-        if not kept.exists():
-            kept.write_bytes(pickle.dumps(function(fmu, *others, **named)))
-        return pickle.loads(kept.read_bytes())
-
-    return result
-
-
 def failing(tests: Sequence[str], same_fmus: bool = False) -> str | None:
     """The first of the tests that does not pass here, empty if they cannot even be collected; None if all pass, as far
     as they are run within WAITED. In a process of its own, which has imported nothing of the tree; nothing that it
@@ -141,6 +103,7 @@ def failing(tests: Sequence[str], same_fmus: bool = False) -> str | None:
         same_fmus: the FMUs are those of the tree, but for their C core.
     """
     running = Path(tempfile.gettempdir(), "running")
+    plugins = [Watched(running), *([Remembered(running.parent.with_name("kept"))] if same_fmus else [])]
     running.write_text("", encoding="utf-8")
     child = os.fork()
     if child == 0:
@@ -151,7 +114,7 @@ def failing(tests: Sequence[str], same_fmus: bool = False) -> str | None:
             nowhere = os.open(os.devnull, os.O_RDWR)
             for stream in range(3):
                 os.dup2(nowhere, stream)
-            result = pytest.main([*OPTIONS, *tests], plugins=[Watched(running), *([Remembered()] if same_fmus else [])])
+            result = pytest.main([*OPTIONS, *tests], plugins=plugins)
         finally:
             os._exit(result)
     end = os.pidfd_open(child)
@@ -190,12 +153,13 @@ def _finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
         if found is None or found in SOUND:
             return found
         if failing([found] if found else ["--collect-only", *left], same_fmus) is None:
-            SOUND.update([found] if found else [])  # other tests may not be collected without a fault
+            if found:
+                SOUND.add(found)
             return found
+        print(f"{found or ' '.join(tests)} fails here without any fault, and finds none", flush=True)
         if not found:
             return None
         UNSOUND.add(found)
-        print(f"{found} fails here without any fault, and finds none", flush=True)
 
 
 def finders(tasks: Iterable[Task], number: int) -> Iterator[tuple[Mutant, str | None]]:

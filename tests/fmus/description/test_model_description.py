@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.description.build_kind import BuildKind
 from driveline.fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
-from driveline.fmus.description.documentation import WIDTH, picture, tables, timing
+from driveline.fmus.description.documentation import WIDTH, page, picture, tables, timing
 from driveline.fmus.description.model_description import model_description
 from driveline.fmus.description.units import base_exponents
 from driveline.fmus.description.variables import interface
@@ -253,7 +253,9 @@ def test_the_documentation_page_tells_of_every_variable(built, name):
 
 @every_fmu
 def test_the_page_says_how_often_it_computes(name):
-    assert f" {2 if name == 'DampingController' else 1} ms" in timing(FMUS[name].block)
+    says = timing(FMUS[name].block)
+    assert f" {2 if name == 'DampingController' else 1} ms" in says
+    assert says in page(FMUS[name], BuildKind("", {}, {}, ""))
 
 
 def test_the_picture_has_an_arrow_for_each_input_to_the_box_and_for_each_output_from_it(monkeypatch):

@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from errno import EPERM
 from pathlib import Path
@@ -56,36 +57,42 @@ def test_what_threads_write_after_they_were_stopped_is_taken_back(tmp_path: Path
     assert files(tmp_path) == before
 
 
-def test_a_file_is_there_all_the_time_in_which_it_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Even a process that is killed leaves the old one or the new one."""
+def refused(*_: Path) -> None:
+    raise OSError(EPERM, "no links here")
+
+
+@pytest.mark.parametrize("link", [os.link, refused])
+def test_a_file_is_there_all_the_time_in_which_it_is_replaced(
+    link: Callable[[Path, Path], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Even a process that is killed leaves the old one or the new one, on a file system without links too."""
     path, replace = tmp_path / "record.json", os.replace
     write_text("old", path)
+    (tmp_path / f"record.json.{os.getpid()}.before.part").write_text("of a killed process")
     found = []
 
     def looked(old: Path, new: Path) -> None:
         found.append(path.read_text())
         replace(old, new)
 
+    monkeypatch.setattr(os, "link", link)
     monkeypatch.setattr(os, "replace", looked)
     with as_before_if_stopped():
         write_text("new", path)
-    assert found == ["old"]
+    assert (found, files(tmp_path)) == (["old"], {"record.json": "new"})
 
 
-def test_where_a_file_system_has_no_links_what_is_stopped_leaves_all_as_it_was(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("link", [os.link, refused])
+def test_what_is_stopped_has_the_old_file_again(
+    link: Callable[[Path, Path], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refused(*_: Path) -> None:
-        raise OSError(EPERM, "no links here")
-
-    monkeypatch.setattr(os, "link", refused)
-    write_text("old", tmp_path / "replaced")
-
     @as_before_if_stopped()
     def stopped() -> None:
         write_text("new", tmp_path / "replaced")
         raise KeyboardInterrupt
 
+    monkeypatch.setattr(os, "link", link)
+    write_text("old", tmp_path / "replaced")
     with pytest.raises(KeyboardInterrupt):
         stopped()
     assert files(tmp_path) == {"replaced": "old"}

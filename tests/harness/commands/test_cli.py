@@ -325,7 +325,8 @@ def test_with_steps_that_miss_the_samples_of_the_controller_it_is_said_why_there
     assert f"no metrics: {reason}" in out
     (_, out, _), _ = simulate("--step", "0.0015", "--json")
     document = json.loads(out)
-    assert (document["runs"], document["no_metrics"][: len(reason)]) == ([], reason)
+    assert document["runs"] == []
+    assert document["no_metrics"].startswith(reason)
     assert (folder / "TwoMassDriveline_tipin15_DampingController.csv").is_file()
 
 

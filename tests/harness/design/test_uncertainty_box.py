@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from docs.studies.design_trials import Gains, Trial, measured, parameters
-from driveline.harness.design import redesign
+from driveline.fmus.building.car_entries import car_entries
+from driveline.harness.design import redesign, unknowns
 from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import WEIGHTS
 from driveline.harness.design.loop_parameters import loop_parameters
@@ -181,3 +182,18 @@ def test_what_a_controller_is_worth_depends_on_the_car_and_on_what_it_is_told(bo
     assert first.get("controller.C") != 90.0
     assert 0.02 < settling < 0.5
     assert 0.0 <= overshoot < 0.5
+
+
+def test_what_is_unknown_costs_what_half_and_twice_of_it_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    cars = []
+
+    def noted(plant: str, manoeuvre: str, car: Mapping[str, Any], told: Mapping[str, Any], settings: Settings) -> Any:
+        cars.append(car["J_1"])
+        return (0.3, 0.2) if told["J_1"] == 0.055 else (0.1, 0.15)
+
+    monkeypatch.setattr(unknowns, "worth", noted)
+    monkeypatch.setattr(unknowns, "design", lambda _: {})
+    (entry,) = (each for each in car_entries({}) if each.name == "J_1")
+    lost = unknowns._worth({}, entry, {"J_1": 0.055}, Settings())
+    assert lost == pytest.approx((0.2, 0.05))
+    assert sorted({*cars}) == pytest.approx([0.5 * 0.055, 2.0 * 0.055])

@@ -18,6 +18,7 @@ from driveline.harness.studies.drives import replay_report
 from driveline.harness.studies.drives.replay_report import PIECE, WHOLE, _densities, _figures, _worst, roughest
 from driveline.harness.studies.faults.fault_report_html import _ratio
 from driveline.harness.studies.faults.judges import JUDGES
+from driveline.harness.views.colours import BLACK, GREEN
 from driveline.harness.views.page import metric_dots
 from driveline.harness.views.page.compared_runs import run_panels
 from driveline.harness.views.page.figures import figure
@@ -34,7 +35,7 @@ def test_the_verdict_of_a_comparison_names_the_controller_and_the_run_in_which_i
     assert verdict({"a": np.nan}, "Mine") == "No run with Mine has an oscillation that can be compared."
 
 
-def test_curves_of_each_run_look_as_that_run_does_and_the_others_as_they_are_declared() -> None:
+def test_curves_of_each_run_have_its_colour_and_the_others_that_which_is_declared() -> None:
     names = (
         "controller.T_driver",
         "controller.T_ref",
@@ -44,11 +45,12 @@ def test_curves_of_each_run_look_as_that_run_does_and_the_others_as_they_are_dec
         "plant.a_body",
     )
     runs = {name: np.zeros(5, [(each, float) for each in ("time", *names)]) for name in (WITHOUT, "ours", "theirs")}
-    for panel in run_panels(runs):
-        for curve in (part for part in panel.parts if isinstance(part, Curve)):
-            of = next((name for name in ("ours", "theirs") if name in curve.label), None)
-            look = looks_of(runs)["ours" if of is None else of][0]
-            assert (curve.color == look) == (of is not None and not curve.label.startswith("wheels")), curve.label
+    declared = {"demand": BLACK, "wheels, ours": BLACK, "of it added by the control": GREEN}
+    curves = [part for panel in run_panels(runs) for part in panel.parts if isinstance(part, Curve)]
+    for curve in curves:
+        run = next((name for name in runs if name in curve.label), "")
+        assert curve.color == (declared.get(curve.label) or looks_of(runs)[run][0]), curve.label
+    assert sum("theirs" in curve.label for curve in curves) == 4
 
 
 def ride(rough: float, size: float) -> np.ndarray:
