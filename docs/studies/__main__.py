@@ -96,14 +96,19 @@ def make(names: Sequence[str]) -> int:
 
 
 def check(names: Sequence[str]) -> int:
-    """Measures the sentinels of studies; returns 1 if one has moved, else 0."""
-    moved = False
+    """Measures the sentinels of studies; returns 1 if one has moved or could not be measured, else 0."""
+    code = 0
     for name in names:
         begin = time.process_time()
-        found = [*sentinel_differences(name)]
-        print("\n".join([f"{name}: {told(found)}, {time.process_time() - begin:.1f} s", *map(str, found)]), flush=True)
-        moved |= bool(found)
-    return int(moved)
+        try:
+            moved = sentinel_differences(name)
+        except (DrivelineError, BuildError) as failure:
+            print(f"{name}: not measured: {failure}", flush=True)
+            code = 1
+            continue
+        print("\n".join([f"{name}: {told(moved)}, {time.process_time() - begin:.1f} s", *map(str, moved)]), flush=True)
+        code = code or int(bool(moved))
+    return code
 
 
 def sentinel_differences(name: str) -> list[Difference]:

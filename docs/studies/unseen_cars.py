@@ -111,9 +111,9 @@ Found = Mapping[tuple[str, str, str], Shown]
 """By car, plant and choice."""
 
 
-def shown(names: Iterable[str]) -> dict[tuple[str, str, str], Shown]:
+def shown(names: Iterable[str], plants: Iterable[str] = PLANTS) -> dict[tuple[str, str, str], Shown]:
     """Of cars by their names."""
-    todo = [Trial(*each) for each in product(names, PLANTS, CHOICES, STEPS)]
+    todo = [Trial(*each) for each in product(names, plants, CHOICES, STEPS)]
     of = dict(zip(todo, run_many(measured, todo, label="unseen cars"), strict=True))
     found: dict[tuple[str, str, str], Shown] = {}
     for name, plant, choice in dict.fromkeys(trial[:3] for trial in todo):
@@ -165,14 +165,14 @@ SENTINEL = "car 1"
 
 
 def again() -> dict[str, Table]:
-    return {"cars": cars_table(shown([SENTINEL]))}
+    return {"cars": cars_table(shown([SENTINEL], PLANTS[:1]))}
 
 
 STUDY = Study(
     "what the damping is worth on cars that no search has seen",
     measure,
     again,
-    {"cars": [", ".join((SENTINEL, *each)) for each in product(PLANTS, CHOICES)]},
+    {"cars": [", ".join((SENTINEL, *each)) for each in product(PLANTS[:1], CHOICES)]},
     (SEED, *NOISE),
     seconds=60,
 )

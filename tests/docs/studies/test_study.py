@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,9 +10,10 @@ import pytest
 from docs.site import numbers
 from docs.site.numbers import as_markdown, disagreements, shown
 from docs.studies import data_file, results
-from docs.studies.__main__ import build_all, sentinel_differences
+from docs.studies.__main__ import build_all, check, make, sentinel_differences
 from docs.studies.pictures import FIGURES, SHOWN
 from docs.studies.study import STUDIES, Column, Measured, Table, differences, study
+from driveline.fmus.errors import BuildError
 from driveline.harness.views.panels import DASHED, Axis, Band, Curve, Drawing, Level, Panel
 from tests import ROOT
 from tests.docs.pages import PAGES, text_of
@@ -140,6 +142,18 @@ def test_the_sentinels_of_a_study_are_as_they_were(name: str, study_folder: Path
     with skipped_if_impossible():  # the target needs a compiler of its own and its emulator
         moved = sentinel_differences(name)
     assert not moved, "\n".join([*map(str, moved), f"`python -m docs.studies {name}` measures it anew"])
+
+
+@pytest.mark.parametrize("measured", [make, check])
+def test_where_a_study_cannot_be_measured_the_others_are(measured, monkeypatch, capsys) -> None:
+    def impossible() -> None:
+        raise BuildError("there is no compiler for the target")
+
+    one = SimpleNamespace(purpose="costs", seconds=1.0, measure=impossible, again=impossible)
+    monkeypatch.setattr("docs.studies.__main__.study", lambda _: one)
+    assert measured(["target", "goals"]) == 1
+    said = [line for line in capsys.readouterr().out.splitlines() if "not measured: there is no compiler" in line]
+    assert ["target" in said[0], "goals" in said[1]] == [True, True]
 
 
 def test_the_pictures_in_git_are_those_of_readme_and_tutorial_and_small() -> None:
