@@ -7,7 +7,6 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from errno import ELOOP, ENOLCK, ENOSPC, ENOTSUP
 from pathlib import Path
-from shutil import copy2
 
 from .interruption import unswallowed
 
@@ -107,13 +106,15 @@ def _set_aside(path: Path) -> None:
     """Keeps a file that will be replaced or removed, see `as_before_if_stopped`."""
     if (before := _before.get()) is None or path in before:
         return
-    before[path] = old = path.with_name(f"{path.name}.{os.getpid()}.before.part") if path.is_file() else None
-    if old is not None:  # a copy: one of both versions is at the path even if the process is killed
+    old = path.with_name(f"{path.name}.{os.getpid()}.before.part") if path.is_file() else None
+    if old is not None:
         old.unlink(missing_ok=True)  # of a killed process of the same number
+    before[path] = old
+    if old is not None:
         try:
-            os.link(path, old)
+            os.link(path, old)  # one of both versions is at the path even if the process is killed
         except OSError:  # not every file system has links
-            copy2(path, old)
+            os.replace(path, old)
 
 
 @contextmanager

@@ -48,7 +48,10 @@ OUTLIER, LONELY = (
 CROWD = 20
 """These largest."""
 
-COLOURED, UNEVEN = (
+WHITE = 8.0
+"""Power of white noise of unit variance, as `is_coloured` computes it."""
+
+COLOURED, UNEVEN, ABOVE = (
     Threshold(
         0.3,
         "1",
@@ -59,7 +62,13 @@ COLOURED, UNEVEN = (
         0.3,
         "1",
         "noise of the motor speed between hits of the gear, at the frequency with least over that with most",
-        "0.31 and more of 360 drives with a noise of 0.01 to 0.15 rad/s, 0.24 and less interpolated or filtered",
+        "0.31 and more of 360 drives with a noise of 0.01 to 0.15 rad/s, 0.24 and less interpolated half-way",
+    ),
+    Threshold(
+        2.0,
+        "1",
+        "power of the motor speed in the second quarter of its band over that of its noise, above which it is of hits",
+        "2.1 and more where a good sensor looks interpolated, 2.4 and less filtered with 0.15 rad/s of noise",
     ),
 )
 MOVED = Threshold(
@@ -200,7 +209,8 @@ def is_coloured(omega_1: np.ndarray, T_s: float) -> bool:
     if last >= COLOURED * before:
         return False
     floor = noise_floor(omega_1)
-    return bool(floor.min() < UNEVEN * floor.max())
+    is_noise = before < ABOVE * WHITE * floor.max()  # then what falls is not what the hits do
+    return is_noise or bool(floor.min() < UNEVEN * floor.max())
 
 
 def diagnose_spectrum(omega_1: np.ndarray, T_s: float) -> Iterator[str]:

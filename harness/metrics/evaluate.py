@@ -182,7 +182,7 @@ def _stride(results: np.ndarray, T_s: float) -> int:
     if stride < 1 or abs(stride * interval - T_s) > 1e-6 * T_s:
         raise ValueError(
             f"the results are {interval * 1e3:g} ms apart; the metrics need a whole fraction of the "
-            f"controller's sample time of {T_s * 1e3:g} ms"
+            f"controller's sample time of {T_s * 1e3:g} ms, such as {0.5 * T_s * 1e3:g} ms"
         )
     return stride
 

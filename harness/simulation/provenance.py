@@ -202,7 +202,7 @@ def write_record(
     found: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
     """Writes what made the files of a run; the arguments are those of `content`."""
-    write_text(_text(content(run, fits, files, inputs, found)), record)
+    write_text(_text(content(run, fits, files, inputs, found, record.parent)), record)
 
 
 def content(
@@ -211,6 +211,7 @@ def content(
     files: Sequence[Path],
     inputs: Sequence[Path | None],
     found: Mapping[str, Any] = MappingProxyType({}),
+    folder: Path = Path(),
 ) -> dict[str, Any]:
     """What made the files of a run.
 
@@ -220,6 +221,7 @@ def content(
         files: that it has written.
         inputs: files beside the FMUs that it has read.
         found: what else is to be told of it.
+        folder: in which the record stands.
     """
     return {
         "program": f"driveline-damping {version('driveline-damping')}",
@@ -234,15 +236,17 @@ def content(
             for system, fit in fits.items()
         },
         "inputs": {str(path): digest(path) for path in inputs if path is not None},
-        "files": {_name(path, files): digest(path) if path.is_file() else None for path in files},
+        "files": {_name(path, files, folder): digest(path) if path.is_file() else None for path in files},
         "units": {name: unit for fit in fits.values() for name, unit in _units(fit).items()},
     }
 
 
-def _name(path: Path, files: Sequence[Path]) -> str:
-    """Of a file in a record: with its folder where another one has the same."""
-    same = [other for other in files if other.name == path.name]
-    return path.name if len(same) == 1 else f"{path.parent.name}/{path.name}"
+def _name(path: Path, files: Sequence[Path], folder: Path) -> str:
+    """Of a file in a record in a folder: with its way from there where another one has the same."""
+    if sum(other.name == path.name for other in files) == 1:
+        return path.name
+    path, folder = path.absolute(), folder.absolute()
+    return path.relative_to(folder).as_posix() if path.is_relative_to(folder) else str(path)
 
 
 def _units(fit: Fit) -> dict[str, str]:

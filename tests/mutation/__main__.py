@@ -15,7 +15,7 @@ from collections import Counter
 from pathlib import Path
 
 from covering import rounds, slow
-from mutants import drawn, mutants_of
+from mutants import drawn, mutants_of, rooms
 from workers import finders
 
 LEAST_SCORE = 0.95
@@ -34,9 +34,16 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of the sample (default: 1)")
     parser.add_argument("--workers", type=int, metavar="N", default=os.cpu_count(), help="(default: one on each core)")
     args = parser.parse_args()
+    code = {file for files in rooms().values() for file in files}
+    if unknown := sorted({*args.files} - code):
+        parser.error(f"{unknown[0]} is no file of the code, such as {min(code)}")
+    if min(args.faults, args.workers) < 1:
+        parser.error("--faults and --workers take a whole number from 1 on")
     known = explained()
     sample = [m for file in args.files for m in mutants_of(file)] if args.files else drawn(args.faults, args.seed)
     tried = [mutant for mutant in sample if mutant.known_as not in known]
+    if not tried:
+        sys.exit("there is no fault to try")
     missed = []
     for mutant, by in finders([(mutant, rounds(mutant.file), slow(mutant.file)) for mutant in tried], args.workers):
         says = "MISSED" if by is None else by or "cannot be imported"

@@ -181,7 +181,7 @@ def test_design_writes_gains_and_both_builds_and_compares(
         assert float(start["k_d"]) == pytest.approx(gains["k_d"])
         assert float(start["C"]) == pytest.approx(car["C"])
     files = json.loads((folder / "car.json").read_text(encoding="utf-8"))["files"]
-    assert [name.rpartition("/")[2] for name in files].count("DampingController.fmu") == 2
+    assert {"car_fmus/DampingController.fmu", "car_fmus/native/DampingController.fmu"} < files.keys()
     lines = capsys.readouterr().out.splitlines()
     assert next(line for line in lines if "to drive with them" in line).endswith(" --output results/car")
     message = "\n".join(line for line in lines if any(f" {name} " in line for name in redesign.REDESIGN_MANOEUVRES))
