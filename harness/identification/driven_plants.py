@@ -76,7 +76,7 @@ def diagnose_driven(identified: Identified, failed: Exception | None = None) -> 
             "J_2, C and d of the filter predict some ten milliseconds: without load torque another drive of this car "
             "gives others, outside these intervals"
         )
-    doubt, by = f"may be up to {100.0 * identified.unconfirmed:g} % too small", identified.plant_fit
+    doubt, by = f"may be off by up to {100.0 * identified.unconfirmed:g} %", identified.plant_fit
     if by:
         yield (
             f"{why}: phi_B = {identified.p.phi_B:.4g} rad of the filter {doubt}; {by.plant}, driven by the recorded "

@@ -96,14 +96,14 @@ def test_of_a_car_that_is_not_explained_the_plant_that_was_driven_tells_stiffnes
     assert "phi_B" not in car_file.identified_car(replace(LACKS, plant_fit=wide))
 
 
-NO_PLANT = "too small, so wide is its interval, as no plant that was driven by the recorded torque confirms it"
+NO_PLANT = ", so wide is its interval, as no plant that was driven by the recorded torque confirms it"
 
 
 @pytest.mark.parametrize(
     ("of", "share", "message"),
     [
-        (LACKS, 0.1, f"the gap of two masses is not that of this car: phi_B may be up to 10 % {NO_PLANT}"),
-        (replace(FOUND, name=WITHOUT_LOAD), 0.3, f"without load torque: phi_B may be up to 30 % {NO_PLANT}"),
+        (LACKS, 0.1, f"the gap of two masses is not that of this car: phi_B may be off by up to 10 %{NO_PLANT}"),
+        (replace(FOUND, name=WITHOUT_LOAD), 0.3, f"without load torque: phi_B may be off by up to 30 %{NO_PLANT}"),
     ],
 )
 def test_a_gap_that_no_plant_confirms_is_as_wide_as_the_filter_may_be_off(
