@@ -97,18 +97,18 @@ def make(names: Sequence[str]) -> int:
 
 def check(names: Sequence[str]) -> int:
     """Measures the sentinels of studies; returns 1 if one has moved or could not be measured, else 0."""
-    code = 0
+    failed = False
     for name in names:
         begin = time.process_time()
         try:
             moved = sentinel_differences(name)
         except (DrivelineError, BuildError) as failure:
             print(f"{name}: not measured: {failure}", flush=True)
-            code = 1
+            failed = True
             continue
         print("\n".join([f"{name}: {told(moved)}, {time.process_time() - begin:.1f} s", *map(str, moved)]), flush=True)
-        code = code or int(bool(moved))
-    return code
+        failed |= bool(moved)
+    return int(failed)
 
 
 def sentinel_differences(name: str) -> list[Difference]:

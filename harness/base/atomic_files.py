@@ -106,15 +106,16 @@ def _set_aside(path: Path) -> None:
     """Keeps a file that will be replaced or removed, see `as_before_if_stopped`."""
     if (before := _before.get()) is None or path in before:
         return
-    old = path.with_name(f"{path.name}.{os.getpid()}.before.part") if path.is_file() else None
-    if old is not None:
-        old.unlink(missing_ok=True)  # of a killed process of the same number
+    if not path.is_file():
+        before[path] = None
+        return
+    old = path.with_name(f"{path.name}.{os.getpid()}.before.part")
+    old.unlink(missing_ok=True)  # of a killed process of the same number
     before[path] = old
-    if old is not None:
-        try:
-            os.link(path, old)  # one of both versions is at the path even if the process is killed
-        except OSError:  # not every file system has links
-            os.replace(path, old)
+    try:
+        os.link(path, old)  # one of both versions is at the path even if the process is killed
+    except OSError:  # not every file system has links
+        os.replace(path, old)
 
 
 @contextmanager
