@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from driveline.harness.metrics.declaration import declared
-from driveline.harness.metrics.evaluate import T_S
+from driveline.harness.metrics.evaluate import COLUMNS, T_S
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.studies.compare import compare_report
 from driveline.harness.studies.compare.compare import Outcome, cases
@@ -36,15 +36,7 @@ def test_the_verdict_of_a_comparison_names_the_controller_and_the_run_in_which_i
 
 
 def test_curves_of_each_run_have_its_colour_and_the_others_that_which_is_declared() -> None:
-    names = (
-        "controller.T_driver",
-        "controller.T_ref",
-        "plant.T_gear",
-        "plant.omega_1",
-        "plant.omega_2",
-        "plant.a_body",
-    )
-    runs = {name: np.zeros(5, [(each, float) for each in ("time", *names)]) for name in (WITHOUT, "ours", "theirs")}
+    runs = {name: np.zeros(5, [(each, float) for each in COLUMNS]) for name in (WITHOUT, "ours", "theirs")}
     declared = {"demand": BLACK, "wheels, ours": BLACK, "of it added by the control": GREEN}
     curves = [part for panel in run_panels(runs) for part in panel.parts if isinstance(part, Curve)]
     for curve in curves:
