@@ -12,15 +12,16 @@ CROSS := $(VENV)/cross
 help: ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
 
-INSTALLED := pyproject.toml setup.py constraints.txt harness/cosimulation/steps.c
-PACKAGES := models fmus harness
+PACKAGES := $(patsubst %/pyproject.toml,%,$(wildcard packages/*/pyproject.toml))
+INSTALLED := pyproject.toml setup.py constraints.txt $(PACKAGES:=/pyproject.toml) packages/fmuloop/src/fmuloop/steps.c
+FOLDERS := models fmus harness
 
 define environment
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or later is needed; $(PYTHON) is `$(PYTHON) --version`. Try make PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 endef
-INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt $(PIP_OPTIONS) --editable
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt $(PIP_OPTIONS) $(PACKAGES:%=--editable ./%) --editable
 
 $(DEMO): $(INSTALLED)
 	$(environment)
@@ -62,7 +63,7 @@ fuzz: $(READY) ## odd calls, files and options by the thousand
 lint: $(READY) ## format, lint, the order of the rooms, and types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	@for package in $(PACKAGES); do ln -sfn ../$$package driveline/$$package; done # they see the package as it is installed
+	@for package in $(FOLDERS); do ln -sfn ../$$package driveline/$$package; done # they see the package as it is installed
 	$(BIN)/lint-imports --no-cache --no-logo
 	$(BIN)/basedpyright
 
@@ -107,4 +108,4 @@ dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked,
 	@! grep -q github.com/OWNER pyproject.toml || echo "not to be published yet: pyproject.toml does not name the repository"
 
 clean: ## everything that was made
-	rm -rf $(VENV) build dist results site fuzz.json .pytest_cache *.egg-info harness/cosimulation/_steps.* harness/explorer/page/loops.json
+	rm -rf $(VENV) build dist results site fuzz.json .pytest_cache *.egg-info packages/fmuloop/src/fmuloop/_steps.* harness/explorer/page/loops.json

@@ -9,8 +9,6 @@ from setuptools import find_packages, setup
 
 ROOT = Path(__file__).parent
 
-(VERSION,) = re.findall(r'^VERSION = "(.+)"$', (ROOT / "fmus/release.py").read_text(encoding="utf-8"), re.M)
-
 RELATIVE = re.compile(r"(!?)(\[[^\]]*\]\()(?!#|[a-z]+:)")
 """What stands before the address of a picture or of a page in the repository."""
 
@@ -20,9 +18,11 @@ FOLDERS = ("models", "fmus", "harness")
 
 def page() -> str:
     """The README of a release as it is read elsewhere: its pictures and pages are those of the tag."""
-    repository = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["urls"]["Repository"]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     return RELATIVE.sub(
-        lambda found: f"{found[0]}{repository}/{'raw' if found[1] else 'blob'}/v{VERSION}/",
+        lambda found: (
+            f"{found[0]}{project['urls']['Repository']}/{'raw' if found[1] else 'blob'}/v{project['version']}/"
+        ),
         (ROOT / "README.md").read_text(encoding="utf-8"),
     )
 
@@ -32,7 +32,6 @@ def _within(folder: str) -> list[str]:
 
 
 setup(
-    version=VERSION,
     packages=["driveline", *(f"driveline.{name}" for folder in FOLDERS for name in (folder, *_within(folder)))],
     package_dir={f"driveline.{folder}": folder for folder in FOLDERS},
     long_description=page(),

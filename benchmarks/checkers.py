@@ -18,9 +18,9 @@ from fmpy.validation import validate_fmu
 from rich.console import Console
 from rich.table import Table
 
-from driveline.harness.base.interruption import script
-from driveline.harness.cosimulation.limits import Limits
-from driveline.harness.exchange.compliance.check import check
+from fmucheck.check import check
+from fmuloop.limits import Limits
+from toolground.interruption import script
 
 LONGEST = 60.0
 """How long in s a checker may take for an FMU."""

@@ -15,13 +15,13 @@ from distributed import Client, LocalCluster
 from rich.console import Console
 from rich.table import Table
 
-from driveline.harness.base.interruption import script
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import many
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.many_runs import many
+from toolground.interruption import script
 
 TIPIN = MANOEUVRES["tipin15"]
 

@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from rich.console import Console
 from rich.table import Table
 
-from driveline.harness.base.interruption import script
+from toolground.interruption import script
 
 UNIT = "python, import numpy, scipy"
 

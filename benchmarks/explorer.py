@@ -13,11 +13,11 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from driveline.harness.base.interruption import script
 from driveline.harness.explorer.content import content, write_page
 from driveline.harness.explorer.module import built_as_sources
 from driveline.harness.loop.places import PLANTS
 from tests.browser import browser
+from toolground.interruption import script
 
 MOVES = {"a gain": ("k_d", 2.0, 0.02), "the car": ("phi_B", 0.1, 0.002)}
 """Slider, where it begins, and how far it goes at a time."""

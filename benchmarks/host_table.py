@@ -17,11 +17,11 @@ from shutil import which
 from tempfile import TemporaryDirectory
 
 from docs.studies.data_file import ROOT
-from driveline.harness.base.interruption import script
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.system import Port, Scheme, System
 from driveline.harness.loop.places import BUILD, NATIVE
+from fmuloop.experiment import Experiment
+from fmuloop.runs import run
+from fmuloop.system import Port, Scheme, System
+from toolground.interruption import script
 
 PAGE = ROOT / "docs" / "hosts.md"
 

@@ -24,18 +24,18 @@ from rich.table import Table
 from benchmarks import plain_loop
 from benchmarks.step_cost import with_fmpy
 from benchmarks.timed import Timed
-from driveline.harness.base.interruption import script
-from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.steps import MakeSteps, interpreted
-from driveline.harness.cosimulation.system import Scheme, System
 from driveline.harness.loop.built_fmus import warn_of_stale
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.simulation.simulate import signals
+from fmuloop.compiled_steps import LIBRARY, CompiledSteps
+from fmuloop.experiment import Experiment
+from fmuloop.loading import loaded
+from fmuloop.steps import MakeSteps, interpreted
+from fmuloop.system import Scheme, System
+from toolground.interruption import script
 
 STEP_SIZE = 1e-3
 MICRO = 1e6

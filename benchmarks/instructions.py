@@ -19,10 +19,10 @@ from rich.table import Table
 
 from benchmarks import plain_loop
 from benchmarks.hosts import START, STEP_SIZE, T_DRIVER
-from driveline.harness.base.interruption import script
 from driveline.harness.loop.built_fmus import warn_of_stale
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import loop
+from toolground.interruption import script
 
 SHORT, LONG = 500, 2500
 """Steps."""

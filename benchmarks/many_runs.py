@@ -13,17 +13,17 @@ from statistics import median
 from time import perf_counter, process_time
 
 from benchmarks.timed import Timed
-from driveline.harness.base.interruption import script
-from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.steps import interpreted
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
-from driveline.harness.simulation import many_runs
 from driveline.harness.simulation.simulate import signals, simulate, start
+from fmuloop import many_runs
+from fmuloop.compiled_steps import LIBRARY, CompiledSteps
+from fmuloop.experiment import Experiment
+from fmuloop.loading import loaded
+from fmuloop.steps import interpreted
+from toolground.interruption import script
 
 TIPIN = MANOEUVRES["tipin15"]
 

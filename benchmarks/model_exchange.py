@@ -21,12 +21,12 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave
 from fmpy.sundials import CVodeSolver
 
-from driveline.fmus.building.builds import FMI3_FOLDER
-from driveline.harness.base.interruption import script
 from driveline.harness.loop.places import BUILD, NATIVE, PLACES, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate, start
 from driveline.models.physics.vehicle import CAR
+from fmublocks.builds import FMI3_FOLDER
+from toolground.interruption import script
 
 MOTOR = PLACES["motor"][0]
 

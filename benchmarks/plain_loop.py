@@ -11,9 +11,9 @@ from tempfile import TemporaryDirectory
 
 import fmpy
 
-from driveline.fmus.native.compiler import host_compiler
-from driveline.harness.cosimulation.interface import Interface, type_of
-from driveline.harness.cosimulation.system import System
+from fmublocks.native.compiler import host_compiler
+from fmuloop.interface import Interface, type_of
+from fmuloop.system import System
 
 SOURCE = Path(__file__).parent / "plain_loop.c"
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-O2")

@@ -18,8 +18,8 @@ from typing import Any
 import fmpy
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
-from driveline.harness.base.interruption import script
 from driveline.harness.loop.places import BUILD, PLANTS
+from toolground.interruption import script
 
 BLOCK = """
 from pythonfmu3 import CoSimulation, Float64, Fmi3Causality, Fmi3Slave, Fmi3Variability, ModelExchange

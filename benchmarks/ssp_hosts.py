@@ -24,12 +24,12 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from driveline.harness.base.interruption import script
 from driveline.harness.commands.cli import main as driveline
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.places import PLANTS, STEP_SIZE
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.system import Scheme
+from toolground.interruption import script
 
 DEFAULT = "SystemStructure.ssd"
 

@@ -16,9 +16,9 @@ from fmpy.fmi2 import FMU2Slave
 from rich.console import Console
 from rich.table import Table
 
-from driveline.fmus.building.builds import NATIVE_FOLDER
-from driveline.harness.base.interruption import script
 from driveline.harness.loop.places import BUILD, PLANTS
+from fmublocks.builds import NATIVE_FOLDER
+from toolground.interruption import script
 
 DURATION, STEP_SIZE = 10.0, 1e-3
 """In s."""

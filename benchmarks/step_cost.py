@@ -21,20 +21,20 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.timed import Timed
-from driveline.harness.base.interruption import script
-from driveline.harness.cosimulation.calls import Call
-from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.instance import Instance
-from driveline.harness.cosimulation.interface import type_of
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.steps import MakeSteps, Steps, interpreted
-from driveline.harness.cosimulation.system import System
 from driveline.harness.loop.built_fmus import warn_of_stale
 from driveline.harness.loop.places import BUILD_HELP, BUILDS, CONNECTIONS, INPUTS, PLANTS
 from driveline.harness.loop.settings import chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
+from fmuloop.calls import Call
+from fmuloop.compiled_steps import LIBRARY, CompiledSteps
+from fmuloop.experiment import Experiment
+from fmuloop.instance import Instance
+from fmuloop.interface import type_of
+from fmuloop.loading import loaded
+from fmuloop.steps import MakeSteps, Steps, interpreted
+from fmuloop.system import System
+from toolground.interruption import script
 
 STEP_SIZE = 1e-3
 MICRO = 1e6

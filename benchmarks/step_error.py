@@ -20,17 +20,17 @@ from rich.table import Table
 
 from benchmarks.timed import Timed
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native.packaging import build_native
-from driveline.harness.base.interruption import script
-from driveline.harness.cosimulation.compiled_steps import CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment, Source
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.system import Scheme, System
 from driveline.harness.loop.built_fmus import warn_of_stale
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
+from fmublocks.native.packaging import build_native
+from fmuloop.compiled_steps import CompiledSteps
+from fmuloop.experiment import Experiment, Source
+from fmuloop.loading import loaded
+from fmuloop.system import Scheme, System
 from tests.back_to_back import STEP_SIZE, Given, drive, fed
+from toolground.interruption import script
 
 TIGHT = 5e-5
 """Stretch of the tight integration in s: at 40 m/s the ripple turns by 1.5 rad in it, of which order 8 loses 1e-7."""

@@ -5,8 +5,8 @@ from time import process_time
 
 import numpy as np
 
-from driveline.harness.cosimulation.calls import Call
-from driveline.harness.cosimulation.steps import MakeSteps, Refusal, Steps
+from fmuloop.calls import Call
+from fmuloop.steps import MakeSteps, Refusal, Steps
 
 
 class Timed:

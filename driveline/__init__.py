@@ -11,11 +11,10 @@ is asked for first, so that a program waits for nothing that it does not use. `h
 """
 
 import sys
-from functools import cache
-from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
-from threading import RLock
+
+from toolground.public_names import public_names
 
 _CHECKOUT = Path(__file__).resolve().parents[1]
 
@@ -48,52 +47,21 @@ def _public_names() -> str:
 
 __doc__ = f"{__doc__}{_public_names()}\n"
 
-_MODULES = {
-    "operators": "models.block",
-    "plant": "models.physics",
-    "vehicle": "models.physics",
-    "torque_estimator": "models.controller",
-    "measured_speeds": "models.comparators",
-}
-"""Public names that are modules, with the package of each."""
-
-_IMPORTING = RLock()
-"""Threads that import modules that import each other would get them half imported."""
-
-
-@cache
-def _lazy() -> tuple:
-    """What imports a public name, and what lists them, as `__init__.pyi` declares them."""
-    from lazy_loader import attach_stub  # not above: `driveline --help` asks for no name
-
-    return attach_stub(__name__, __file__)
+_find, __dir__ = public_names(__name__, __file__)
 
 
 def __getattr__(name: str) -> object:
     if name == "__all__" and sys._getframe(1).f_globals.get("__name__") != "pydoc":  # its page has no room for all
-        return [each for each in __dir__() if _is_installed(each)]
-    with _IMPORTING:
-        find, names, _ = _lazy()
-        if name not in names():
-            from .fmus.names import meant
-
-            near = meant(name, names())
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{near and '; ' + near}")
-        if name in _MODULES:
-            import_module(f".{_MODULES[name]}.{name}", __name__)
-        return find(name)
+        return [public for public in __dir__() if _is_installed(public)]
+    return _find(name)
 
 
 def _is_installed(name: str) -> bool:
     """Whether a public name needs no extra that is not here."""
-    from .harness.base.errors import MissingExtra
+    from toolground.errors import MissingExtra
 
     try:
         __getattr__(name)
     except MissingExtra:
         return False
     return True
-
-
-def __dir__() -> list[str]:
-    return _lazy()[1]()

@@ -2,11 +2,11 @@
 from .harness.simulation.simulate import simulate as simulate
 from .harness.loop.settings import Settings as Settings
 from .harness.metrics.evaluate import evaluate as evaluate
-from .harness.simulation.many_runs import run_many as run_many
-from .harness.simulation.many_runs import many as many
-from .harness.cosimulation.runs import kept_loaded as kept_loaded
+from fmuloop.many_runs import run_many as run_many
+from fmuloop.many_runs import many as many
+from fmuloop.runs import kept_loaded as kept_loaded
 from .harness.loop.built_fmus import build_missing as build_missing
-from .harness.cosimulation.results import Results as Results
+from fmuloop.results import Results as Results
 from .harness.metrics.run_metrics import Metrics as Metrics
 from .harness.metrics.notebook_table import frame as frame
 from .harness.views.signals_file import write_signals as write_signals
@@ -47,10 +47,10 @@ from .harness.design.design import gains_file as gains_file
 from .harness.design.search.cost_evaluation import CostEvaluation as CostEvaluation
 
 # Recordings: what was measured, and what it says of the car
-from .harness.recordings.measurement import read_measurement as read_measurement
-from .harness.recordings.measurement import Measurement as Measurement
-from .harness.recordings.drive import read_drive as read_drive
-from .harness.recordings.drive import Drive as Drive
+from driverecords.measurement import read_measurement as read_measurement
+from driverecords.measurement import Measurement as Measurement
+from driverecords.drive import read_drive as read_drive
+from driverecords.drive import Drive as Drive
 from .harness.identification.prior_knowledge import identify as identify
 from .harness.identification.identify import Identified as Identified
 from .harness.identification.car_file import identified_lines as identified_lines
@@ -59,13 +59,13 @@ from .harness.identification.car_file import vehicle_file as vehicle_file
 
 # FMUs: those of the project, and blocks of your own
 from .fmus.building.builds import build_fmus as build_fmus
-from .fmus.fmu import Fmu as Fmu
-from .models.block.types import ContinuousBlock as ContinuousBlock
-from .models.block.types import SampledBlock as SampledBlock
-from .models.block.declaration import Real as Real
-from .models.block.declaration import Integer as Integer
-from .models.block.declaration import Boolean as Boolean
-from .models.block import operators as operators
+from fmublocks.fmu import Fmu as Fmu
+from fmublocks.block.types import ContinuousBlock as ContinuousBlock
+from fmublocks.block.types import SampledBlock as SampledBlock
+from fmublocks.block.declaration import Real as Real
+from fmublocks.block.declaration import Integer as Integer
+from fmublocks.block.declaration import Boolean as Boolean
+from fmublocks.block import operators as operators
 from .models.physics import plant as plant
 from .models.physics import vehicle as vehicle
 from .models.controller.supervised_controller import supervised as supervised
@@ -78,22 +78,22 @@ from .models.comparators import measured_speeds as measured_speeds
 from .models.controller.damping_law import washed_out as washed_out
 
 # Systems: the loop with other schemes and limits, or a system of your own
-from .harness.cosimulation.system import Scheme as Scheme
-from .harness.cosimulation.limits import Limits as Limits
-from .harness.cosimulation.system import System as System
-from .harness.cosimulation.system import Connection as Connection
-from .harness.cosimulation.system import Port as Port
-from .harness.cosimulation.experiment import Experiment as Experiment
-from .harness.cosimulation.loading import loaded as loaded
-from .harness.cosimulation.master import Loop as Loop
+from fmuloop.system import Scheme as Scheme
+from fmuloop.limits import Limits as Limits
+from fmuloop.system import System as System
+from fmuloop.system import Connection as Connection
+from fmuloop.system import Port as Port
+from fmuloop.experiment import Experiment as Experiment
+from fmuloop.loading import loaded as loaded
+from fmuloop.master import Loop as Loop
 
 # Errors: what can be mended; the message says what is wrong and what is allowed
-from .harness.base.errors import DrivelineError as DrivelineError
-from .harness.base.errors import WiringError as WiringError
-from .harness.base.errors import SimulationError as SimulationError
-from .harness.base.errors import MissingExtra as MissingExtra
+from toolground.errors import UserError as DrivelineError  # noqa: F401
+from fmuloop.errors import WiringError as WiringError
+from fmuloop.errors import SimulationError as SimulationError
+from toolground.errors import MissingExtra as MissingExtra
 from .harness.manoeuvres.parts import ManoeuvreError as ManoeuvreError
-from .harness.recordings.source import RecordingError as RecordingError
+from driverecords.source import RecordingError as RecordingError
 from .harness.design.kalman import DesignError as DesignError
-from .fmus.errors import BuildError as BuildError
+from fmublocks.errors import BuildError as BuildError
 from .fmus.errors import ParameterFileError as ParameterFileError

@@ -1,16 +1,6 @@
-"""What the user of the build can mend."""
+"""What the user of car and controller files can mend."""
 
-import os
-from errno import ENOSPC
-from tempfile import gettempdir
-
-
-class BuildError(Exception):
-    """What was asked for cannot be built; the text says why."""
-
-
-class NotPossible(BuildError):
-    """Something that a build needs is missing; the text says what."""
+from fmublocks.errors import BuildError
 
 
 class ParameterFileError(BuildError):
@@ -28,8 +18,3 @@ class NoSuchCar(ParameterFileError):
     def __init__(self, text: str, *entries: str) -> None:
         super().__init__(text)
         self.entries = entries
-
-
-def full_disk() -> OSError:
-    """That there is no room for temporary files."""
-    return OSError(ENOSPC, os.strerror(ENOSPC), f"temporary files in {gettempdir()}")

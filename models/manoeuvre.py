@@ -19,9 +19,10 @@ from dataclasses import replace
 from math import pi
 from typing import Annotated, Any, NamedTuple
 
-from .block.declaration import Boolean, Real, Record, quantities, variables
-from .block.operators import clip, floor, logical_and, minimum, sin, where
-from .block.types import ContinuousBlock
+from fmublocks.block.declaration import Boolean, Real, Record, quantities, variables
+from fmublocks.block.operators import clip, floor, logical_and, minimum, sin, where
+from fmublocks.block.types import ContinuousBlock
+
 from .physics.plant import Input as PlantInput
 
 POINTS = 64

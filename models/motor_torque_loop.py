@@ -12,11 +12,12 @@ The noise is held for T_s; sample k of it is a pure function of the seed and k.
 
 from typing import Annotated, NamedTuple
 
-from .block.declaration import Integer, Real
-from .block.frame import Content, Frame
-from .block.noise import normals
-from .block.operators import clip, cos, exp, floor, logical_and, logical_or, maximum, sin, where
-from .block.types import ContinuousBlock
+from fmublocks.block.declaration import Integer, Real
+from fmublocks.block.frame import Content, Frame
+from fmublocks.block.noise import normals
+from fmublocks.block.operators import clip, cos, exp, floor, logical_and, logical_or, maximum, sin, where
+from fmublocks.block.types import ContinuousBlock
+
 from .physics import dead_time
 from .physics.dead_time import Line
 from .physics.vehicle import CAR, MotorLag, MotorTorque

@@ -19,10 +19,22 @@ fault the signals pass as they are, within the same instant.
 
 from typing import Annotated, NamedTuple
 
-from .block.declaration import Boolean, Integer, Real
-from .block.noise import normals, uniform
-from .block.operators import LARGEST, branch, clip, element, floor, logical_and, logical_not, logical_or, maximum, where
-from .block.types import SampledBlock
+from fmublocks.block.declaration import Boolean, Integer, Real
+from fmublocks.block.noise import normals, uniform
+from fmublocks.block.operators import (
+    LARGEST,
+    branch,
+    clip,
+    element,
+    floor,
+    logical_and,
+    logical_not,
+    logical_or,
+    maximum,
+    where,
+)
+from fmublocks.block.types import SampledBlock
+
 from .controller import T_S
 
 HISTORY = 250

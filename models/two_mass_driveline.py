@@ -21,9 +21,10 @@ they would show then follows omega_2 without slip.
 
 from typing import Annotated, NamedTuple
 
-from .block.declaration import Boolean, Real
-from .block.operators import maximum, sign, where
-from .block.types import ContinuousBlock
+from fmublocks.block.declaration import Boolean, Real
+from fmublocks.block.operators import maximum, sign, where
+from fmublocks.block.types import ContinuousBlock
+
 from .physics import brake, vehicle
 from .physics.backlash import dead_zone
 from .physics.brake import BRAKE

@@ -27,9 +27,10 @@ J. Applied Mechanics 42(2), 1975).
 
 from typing import Annotated, NamedTuple
 
-from .block.declaration import Real
-from .block.operators import atan, clip, cos, maximum, minimum, sign, sin, tanh, where
-from .block.types import ContinuousBlock
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import atan, clip, cos, maximum, minimum, sign, sin, tanh, where
+from fmublocks.block.types import ContinuousBlock
+
 from .physics import brake, vehicle
 from .physics.backlash import dead_zone
 from .physics.brake import BRAKE

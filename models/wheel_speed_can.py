@@ -7,11 +7,12 @@ The message arrives after a random transport delay, never overtaking another, un
 
 from typing import Annotated, NamedTuple
 
-from .block.declaration import Boolean, Integer, Real
-from .block.frame import Content, Frame
-from .block.noise import uniform
-from .block.operators import branch, floor, logical_and, logical_or, maximum, minimum, where
-from .block.types import SampledBlock
+from fmublocks.block.declaration import Boolean, Integer, Real
+from fmublocks.block.frame import Content, Frame
+from fmublocks.block.noise import uniform
+from fmublocks.block.operators import branch, floor, logical_and, logical_or, maximum, minimum, where
+from fmublocks.block.types import SampledBlock
+
 from .physics import tooth_wheel
 from .physics.tooth_wheel import ToothWheel
 from .physics.vehicle import CAR, GearRatio, WheelRadius

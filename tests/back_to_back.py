@@ -13,17 +13,17 @@ from typing import NamedTuple
 import numpy as np
 
 from driveline.fmus.catalogue import EVERY
-from driveline.harness.cosimulation.experiment import Experiment, Source
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.system import Scheme, System
 from driveline.harness.loop.places import NATIVE
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import KMH
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.simulation.simulate import signals, start
-from driveline.models.block.declaration import Boolean, Integer, Real, variables
-from driveline.models.block.runner import runner
-from driveline.models.block.types import Block
+from fmublocks.block.declaration import Boolean, Integer, Real, variables
+from fmublocks.block.runner import runner
+from fmublocks.block.types import Block
+from fmuloop.experiment import Experiment, Source
+from fmuloop.runs import run
+from fmuloop.system import Scheme, System
 
 STEP_SIZE = 1e-3
 """Communication step in s."""

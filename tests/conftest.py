@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
-from driveline.fmus.building.builds import builders
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.python.packaging import build
-from driveline.harness.recordings import bounded_reading
+from driverecords import bounded_reading
+from fmublocks.builds import builders
+from fmublocks.python.packaging import build
 from tests.browser import browser
 from tests.compiling import caching_compiler
 from tests.skipping import skipped_if_impossible

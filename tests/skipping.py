@@ -5,8 +5,8 @@ from contextlib import contextmanager
 
 import pytest
 
-from driveline.fmus.building.builds import NotPossible
-from driveline.fmus.native.compiler import CompilerError
+from fmublocks.builds import NotPossible
+from fmublocks.native.compiler import CompilerError
 
 
 @contextmanager

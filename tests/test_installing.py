@@ -14,8 +14,8 @@ from zipfile import ZipFile
 import pytest
 from markdown_it import MarkdownIt
 
-from driveline.fmus import release
 from driveline.fmus.catalogue import FMUS
+from fmublocks import release
 from tests import ROOT
 
 pytestmark = pytest.mark.slow  # builds and installs

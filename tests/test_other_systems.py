@@ -34,7 +34,7 @@ def guarded(name, globals=None, *others, **named):
 builtins.__import__ = guarded
 for name in names:
     importlib.import_module(name)
-assert sys.modules["driveline.harness.base.atomic_files"].fcntl is None
+assert sys.modules["toolground.atomic_files"].fcntl is None
 """
 
 

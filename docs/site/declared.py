@@ -5,14 +5,18 @@ from pathlib import Path
 from types import ModuleType
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.documentation import tables, timing
-from driveline.fmus.file_limits import LIMITS
-from driveline.fmus.fmu import Fmu
-from driveline.harness.exchange.compliance import check
 from driveline.harness.identification import car_file, diagnostics, estimator, identify, noise, step, torque_loop
 from driveline.harness.identification.priors import PRIORS
 from driveline.harness.loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS, PARAMETERS, PLACES, ROAD_LOAD
-from driveline.harness.recordings import (
+from driveline.harness.simulation.excitation_drive import MEASURED_WHEELS
+from driveline.harness.studies.faults.fault_injection import STATUS, T_DAMP
+from driveline.harness.studies.faults.judges import JUDGES
+from driveline.harness.views import drive_figure, run_figure, step_figure
+from driveline.harness.views.markdown import markdown_table
+from driveline.harness.views.signal_lines import Row
+from driveline.models.controller.causes import FAILURES, FEEDING, Cause
+from driveline.models.damping_controller import BLOCK
+from driverecords import (
     alignment,
     channel_rules,
     force_balance,
@@ -22,18 +26,14 @@ from driveline.harness.recordings import (
     signal_checks,
     time_base,
 )
-from driveline.harness.recordings.missing_values import FILLED
-from driveline.harness.recordings.quantities import BY_UNIT, QUANTITIES, aliases
-from driveline.harness.recordings.thresholds import Threshold
-from driveline.harness.simulation.excitation_drive import MEASURED_WHEELS
-from driveline.harness.studies.faults.fault_injection import STATUS, T_DAMP
-from driveline.harness.studies.faults.judges import JUDGES
-from driveline.harness.views import drive_figure, run_figure, step_figure
-from driveline.harness.views.markdown import markdown_table
-from driveline.harness.views.signal_lines import Row
-from driveline.models.controller.causes import FAILURES, FEEDING, Cause
-from driveline.models.damping_controller import BLOCK
+from driverecords.missing_values import FILLED
+from driverecords.quantities import BY_UNIT, QUANTITIES, aliases
+from driverecords.thresholds import Threshold
+from fmublocks.description.documentation import tables, timing
+from fmublocks.fmu import Fmu
+from fmucheck import check
 from tests.fmus.legal_hosts import HOSTS
+from toolground.file_limits import LIMITS
 
 CHECKS = Path(__file__).with_name("recording_checks.md").read_text(encoding="utf-8")
 

@@ -17,10 +17,10 @@ from docs.site.declared import TABLES
 from docs.studies import data_file
 from docs.studies.data_file import Kept
 from docs.studies.study import Cell, Column, Table, number
-from driveline.harness.base.plain_text import printed
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.figure_style import draw
 from driveline.harness.views.markdown import markdown_table
+from toolground.plain_text import printed
 
 SHOWN = re.compile(r"^\[(table|figure): (\w+)(?:/([^\]]+))?\]\([^)\s]+\)$", re.M)
 """A paragraph that stands for a table or a figure."""

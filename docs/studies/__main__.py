@@ -17,11 +17,11 @@ import time
 from collections.abc import Sequence
 from unittest.mock import patch
 
-from driveline.fmus.errors import BuildError
-from driveline.harness.base.errors import DrivelineError
-from driveline.harness.base.interruption import script
 from driveline.harness.loop.built_fmus import build_missing
 from driveline.harness.loop.places import COMPARATORS, PLANTS
+from fmublocks.errors import BuildError
+from toolground.errors import UserError
+from toolground.interruption import script
 
 from . import data_file
 from .pictures import draw_pictures
@@ -84,7 +84,7 @@ def make(names: Sequence[str]) -> int:
         begin = _cpu_seconds()
         try:
             measured = one.measure()
-        except (DrivelineError, BuildError) as failure:
+        except (UserError, BuildError) as failure:
             print(f"[{k}/{len(names)}] {name}: not measured: {failure}", flush=True)
             code = 1
             continue
@@ -102,7 +102,7 @@ def check(names: Sequence[str]) -> int:
         begin = time.process_time()
         try:
             moved = sentinel_differences(name)
-        except (DrivelineError, BuildError) as failure:
+        except (UserError, BuildError) as failure:
             print(f"{name}: not measured: {failure}", flush=True)
             failed = True
             continue

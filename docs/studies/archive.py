@@ -15,19 +15,20 @@ from tempfile import TemporaryDirectory
 import fmpy
 import numpy as np
 
-from driveline.fmus.archive import write_archive
-from driveline.fmus.building.builds import FMI3_FOLDER, NATIVE_FOLDER, build_fmus
+from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.catalogue import FMUS, MANOEUVRE
-from driveline.fmus.release import VERSION
-from driveline.harness.base.errors import DrivelineError
-from driveline.harness.base.interruption import script
 from driveline.harness.commands.cli import main as driveline
-from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.results import Results
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.places import CONNECTIONS, PLACES, PLANTS, STEP_SIZE
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
+from fmublocks.archive import write_archive
+from fmublocks.builds import FMI3_FOLDER, NATIVE_FOLDER
+from fmublocks.release import VERSION
+from fmuloop.interface import Interface
+from fmuloop.results import Results
+from fmuloop.system import Scheme
+from toolground.errors import UserError
+from toolground.interruption import script
 
 from .data_file import ROOT
 
@@ -64,7 +65,7 @@ def _content(made: Path, platform: str) -> dict[str, bytes]:
     for fmi, names in ((2, [*FMUS, MANOEUVRE]), (3, list(FMUS))):
         list(build_fmus(names, made, "native", platform, fmi=fmi))
     if driveline(["ssp", "--fmus", str(made), "--build", "native", "--output", str(made), "--quiet"]):
-        raise DrivelineError("driveline ssp failed")
+        raise UserError("driveline ssp failed")
     files = {"ssp/driveline.ssp": made / "driveline.ssp", "LICENSE.txt": ROOT / "LICENSE"}
     files |= {f"{into}/{name}.fmu": made / build / f"{name}.fmu" for into, build in FOLDERS.items() for name in FMUS}
     content = {path: file.read_bytes() for path, file in files.items()}
@@ -90,7 +91,7 @@ def _reference(name: str, made: Path) -> dict[str, str]:
         for path in (made / build / f"{name}.fmu" for build in FOLDERS.values())
     ]
     if any(not np.array_equal(both[0][column], both[1][column]) for column in ("time", *outputs)):
-        raise DrivelineError(f"{name}: its FMUs of FMI 2.0 and FMI 3.0 give different results")
+        raise UserError(f"{name}: its FMUs of FMI 2.0 and FMI 3.0 give different results")
     options = "".join(f"{option}, {value}\n" for option, value in OPTIONS.items())
     return {f"{name}_in.csv": _csv(inputs), f"{name}_ref.csv": _csv(both[0]), f"{name}_ref.opt": options}
 
@@ -139,7 +140,7 @@ def _csv(table: np.ndarray) -> str:
     for row in table:
         text.write(",".join(_number(value) for value in row) + "\n")
     if text.tell() > LARGEST:
-        raise DrivelineError(f"a file of {text.tell()} bytes; the cross-check allows {LARGEST}")
+        raise UserError(f"a file of {text.tell()} bytes; the cross-check allows {LARGEST}")
     return text.getvalue()
 
 

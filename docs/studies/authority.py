@@ -18,8 +18,8 @@ from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import KMH, step
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.evaluate import evaluate
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.many_runs import run_many
 
 from .study import Cell, Column, Measured, Study, Table
 

@@ -22,8 +22,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from driveline.fmus.building.parameter_files import read_files
-from driveline.harness.cosimulation.parameter_changes import require_constant
-from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.loop.built_fmus import built
 from driveline.harness.loop.places import BUILD, PLACES, PLANTS, T_S
@@ -33,7 +31,6 @@ from driveline.harness.metrics.declaration import Column as metric_column
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.evaluate import at_samples, evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate, start
 from driveline.harness.studies.margins.linear_plant import NOISELESS
 from driveline.harness.views.colours import BLACK, BLUE, GREY, VERMILION
@@ -41,6 +38,9 @@ from driveline.harness.views.figure_style import draw
 from driveline.harness.views.metrics_table import values
 from driveline.harness.views.panels import DASHED, Axis, Curve, Drawing, Panel
 from driveline.models.controller.supervision import Parameters
+from fmuloop.many_runs import run_many
+from fmuloop.parameter_changes import require_constant
+from fmuloop.wiring import fit
 
 from .optimal_torque.contacts import PARTS, Contacts
 from .optimal_torque.linear_car import linear_car

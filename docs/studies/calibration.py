@@ -13,7 +13,7 @@ from driveline.harness.loop.places import PLANTS
 from driveline.harness.metrics.declaration import Column as MetricColumn
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
+from fmuloop.many_runs import run_many
 
 from .calibration_cases import (
     CAR_DRIVEN,

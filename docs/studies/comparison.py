@@ -10,9 +10,9 @@ from driveline.harness.loop.places import COMPARATORS, PLACES, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.robustness.outcome import SHOWN
+from fmuloop.many_runs import run_many
 
 from .design_trials import mean
 from .study import Cell, Column, Measured, Study, Table, cell, number

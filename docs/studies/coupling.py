@@ -8,9 +8,9 @@ those of every manoeuvre with noise.
 from collections.abc import Iterable, Mapping
 from itertools import product
 
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.places import STEP_SIZE
-from driveline.harness.simulation.many_runs import run_many
+from fmuloop.many_runs import run_many
+from fmuloop.system import Scheme
 
 from .coupling_error import COUPLING_MANOEUVRES, PLANTS, SIGNALS, STEPS, Comparison, compare
 from .dead_time import SECTIONS, dead_times

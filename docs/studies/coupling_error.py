@@ -10,9 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.places import BUILD
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import KMH
@@ -20,6 +17,9 @@ from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import Signal, lines
 from driveline.harness.simulation.simulate import signals, start
 from driveline.models.controller import T_S
+from fmuloop.experiment import Experiment
+from fmuloop.runs import run
+from fmuloop.system import Scheme
 
 from . import monolithic
 from .monolithic import INTERVAL, PLANTS

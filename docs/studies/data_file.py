@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from driveline.harness.base.atomic_files import write_text
 from driveline.harness.views import panels
 from driveline.harness.views.panels import Drawing
+from toolground.atomic_files import write_text
 
 from .study import Column, Measured, Table
 

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.places import BUILD
 from driveline.harness.manoeuvres.signals import Signal
 from driveline.models.controller.torque_estimator import Estimate
+from fmuloop.system import Scheme
 
 from .coupling_error import NOISELESS, T_S, cosimulated, reference, short
 

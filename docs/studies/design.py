@@ -13,8 +13,8 @@ from driveline.harness.design.design import design
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.margins.car_properties import swing
+from fmuloop.many_runs import run_many
 
 from .data_file import ROOT
 from .design_trials import Gains, Trial, measured, own_gains

@@ -12,8 +12,8 @@ from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import KMH, step
 from driveline.harness.metrics.evaluate import evaluate
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.many_runs import run_many
 
 from .comparison import CONTROLLERS
 from .study import Cell, Column, Measured, Study, Table, cell

@@ -13,9 +13,9 @@ import numpy as np
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.models.controller.supervision import FALLBACK
+from fmuloop.many_runs import run_many
 
 from .study import Column, Measured, Study, Table
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from driveline.harness.base.csv_file import write_csv
 from driveline.harness.manoeuvres.prbs import shift_register
+from toolground.csv_file import write_csv
 
 STEP, PARTS = 1e-3, 2
 """Step of the loop in s, and steps of the integrator (Runge, Kutta) in it."""

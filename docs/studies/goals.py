@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from driveline.fmus.building.parameter_files import read_parameters
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.design.character import factors
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
@@ -24,12 +23,13 @@ from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.robustness import summary
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.robustness_campaign import campaign
 from driveline.models.controller.gains import GAINS
+from fmuloop.many_runs import run_many
+from fmuloop.system import Scheme
 
 from .study import Cell, Column, Measured, Study, Table
 from .terminal import show

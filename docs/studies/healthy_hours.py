@@ -15,16 +15,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from driveline.harness.base.longest_interval import longest_run
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.models.controller import T_S, causes, torque_loop, wheel_messages
 from driveline.models.controller.supervision import FALLBACK, Input
 from driveline.models.damping_controller import BLOCK
 from driveline.models.physics.vehicle import added_speed
+from driverecords.longest_interval import longest_run
+from fmuloop.many_runs import run_many
 
 from .study import Column, Measured, Study, Table
 from .terminal import show

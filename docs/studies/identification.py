@@ -19,7 +19,7 @@ from docs.studies.identification_accuracy import (
     trapped,
 )
 from driveline.harness.identification.estimator import Z_95
-from driveline.harness.simulation.many_runs import run_many
+from fmuloop.many_runs import run_many
 
 from .study import Column, Measured, Study, Table, table_of
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from docs.studies.foreign_loop import Car, drawn, driven, logged
 from driveline.fmus.building.parameter_files import read_vehicle
-from driveline.harness.base.csv_file import write_csv
 from driveline.harness.design import redesign
 from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import MOTOR, PLANT, records
@@ -33,12 +32,13 @@ from driveline.harness.identification.prior_knowledge import identify, known
 from driveline.harness.identification.priors import before
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.prbs import TEST_DRIVE, TEST_SPEED, binary_torque
-from driveline.harness.recordings.measurement import Measurement, read_measurement
 from driveline.harness.simulation.excitation_drive import MeasurementWheels, sensed
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.margins.linear_plant import linear_plant as linear
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
+from driverecords.measurement import Measurement, read_measurement
+from toolground.csv_file import write_csv
 
 DESIGN_MODEL, VEHICLE = PLANTS
 

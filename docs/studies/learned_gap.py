@@ -15,9 +15,9 @@ from driveline.harness.manoeuvres.catalogue import KMH, MANOEUVRES
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.metrics.evaluate import at_samples, evaluate
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.models.physics.vehicle import CAR
+from fmuloop.many_runs import run_many
 
 from .study import Column, Measured, Study, Table
 

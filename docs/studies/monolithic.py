@@ -18,8 +18,8 @@ from driveline.models import (
     validation_vehicle,
     wheel_speed_can,
 )
-from driveline.models.block.runner import runner
-from driveline.models.block.types import Block, ContinuousBlock
+from fmublocks.block.runner import runner
+from fmublocks.block.types import Block, ContinuousBlock
 
 INTERVAL = wheel_speed_can.T_S
 """Interval in s of the results; the sample times of all blocks are whole multiples of it."""

@@ -7,7 +7,7 @@ from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
+from fmuloop.many_runs import run_many
 
 from .goals import (
     GOALS,

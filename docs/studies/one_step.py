@@ -18,9 +18,9 @@ from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import Settings
 from driveline.harness.loop.settings import settings as settings_of
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.recordings.measurement import Measurement
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from driverecords.measurement import Measurement
+from fmuloop.many_runs import run_many
 
 from .study import Cell, Column, Measured, Study, Table
 

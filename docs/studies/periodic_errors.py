@@ -5,11 +5,11 @@ A block between the sensors and the controller, with the interface of SignalFaul
 
 from typing import Annotated, NamedTuple
 
-from driveline.fmus.fmu import Fmu
-from driveline.models.block.declaration import Real
-from driveline.models.block.operators import sin, where
-from driveline.models.block.types import SampledBlock
 from driveline.models.signal_faults import T_S, Begin, Input, Signals
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import sin, where
+from fmublocks.block.types import SampledBlock
+from fmublocks.fmu import Fmu
 
 TURN = 6.283185307179586
 """A full turn in rad."""

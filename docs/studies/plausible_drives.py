@@ -17,19 +17,19 @@ from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.road_load import Track
 from driveline.harness.metrics.evaluate import at_samples
-from driveline.harness.recordings.channel_rules import excursions, spikes
-from driveline.harness.recordings.channels import Channel
-from driveline.harness.recordings.drive import Drive
-from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.findings import Finding
-from driveline.harness.recordings.force_balance import Balance, balance, forces
-from driveline.harness.recordings.missing_values import coded
-from driveline.harness.recordings.plausibility import not_followed, of_drive
-from driveline.harness.recordings.quantities import QUANTITIES
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.studies.drives.replay import car_of, followed, speed_error
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.outcome import Case
+from driverecords.channel_rules import excursions, spikes
+from driverecords.channels import Channel
+from driverecords.drive import Drive
+from driverecords.file_units import FileUnit
+from driverecords.findings import Finding
+from driverecords.force_balance import Balance, balance, forces
+from driverecords.missing_values import coded
+from driverecords.plausibility import not_followed, of_drive
+from driverecords.quantities import QUANTITIES
+from fmuloop.many_runs import run_many
 
 from .study import Cell, Column, Measured, Study, Table
 

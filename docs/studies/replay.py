@@ -12,10 +12,10 @@ from driveline.harness.loop.settings import settings
 from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.road_load import Track
 from driveline.harness.metrics.run_metrics import RideMetrics
-from driveline.harness.recordings.drive import read_drive
 from driveline.harness.studies.drives.replay import car_of, replay
 from driveline.harness.views.metrics_table import RIDES_SHOWN
 from driveline.harness.views.signal_lines import WITHOUT
+from driverecords.drive import read_drive
 
 from .data_file import ROOT
 from .study import Cell, Column, Measured, Study, Table, cell

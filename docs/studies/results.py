@@ -8,12 +8,12 @@ from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import COMPARED, MANOEUVRES
 from driveline.harness.metrics.evaluate import at_samples, evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.drive_figure import drive_drawing
 from driveline.harness.views.markdown import markdown_table
 from driveline.harness.views.metrics_table import SHOWN
 from driveline.harness.views.signal_lines import WITHOUT
+from fmuloop.many_runs import run_many
 
 from .study import Cell, Column, Measured, Study, Table, cell, number
 

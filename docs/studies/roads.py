@@ -18,8 +18,6 @@ from typing import NamedTuple
 import numpy as np
 
 from driveline.fmus.catalogue import SIGNAL_FAULTS
-from driveline.harness.cosimulation.experiment import Experiment, Source
-from driveline.harness.cosimulation.runs import run
 from driveline.harness.loop.built_fmus import built, made_if_missing
 from driveline.harness.loop.places import BUILD, COMPARATORS, NATIVE, T_S
 from driveline.harness.loop.settings import Settings, loop
@@ -28,11 +26,13 @@ from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.signals import Signal, lines
 from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.metrics.spectrum import band_rms
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults.fault_injection import with_faults
 from driveline.models.controller.supervision import FALLBACK
 from driveline.models.signal_faults import FRAME, LATE, MOTOR_SPEED, MOTOR_TORQUE
+from fmuloop.experiment import Experiment, Source
+from fmuloop.many_runs import run_many
+from fmuloop.runs import run
 
 from . import periodic_errors
 from .study import Cell, Column, Measured, Study, Table

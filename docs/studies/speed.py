@@ -20,14 +20,14 @@ from typing import Any
 from benchmarks import commands, hosts, instructions, many_runs, simulate_parts
 from benchmarks.hosts import CONTENDERS, MICRO, START, STEADY, STEP_SIZE
 from benchmarks.timed import Timed
-from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.steps import interpreted
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.simulation.simulate import signals, simulate
+from fmuloop.compiled_steps import LIBRARY, CompiledSteps
+from fmuloop.experiment import Experiment
+from fmuloop.loading import loaded
+from fmuloop.steps import interpreted
 
 from .study import Cell, Column, Measured, Study, Table, cell
 from .terminal import show

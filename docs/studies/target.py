@@ -9,9 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from driveline.fmus.native.statements import SINGLE
-from driveline.fmus.target.sources import CONTROLLERS, target_sources
-from driveline.harness.cosimulation.wiring import fit
+from driveline.fmus.catalogue import CONTROLLERS
 from driveline.harness.exchange.target.comparison import Comparison, compare, responses
 from driveline.harness.exchange.target.controllers import programs
 from driveline.harness.exchange.target.costs import Size, size_of
@@ -22,6 +20,9 @@ from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.views.colours import BLACK, BLUE, VERMILION
 from driveline.harness.views.panels import DASHED, Axis, Curve, Drawing, Panel
+from fmublocks.native.statements import SINGLE
+from fmublocks.target.sources import target_sources
+from fmuloop.wiring import fit
 
 from .study import Cell, Column, Measured, Study, Table
 from .target_deviations import findings, reason

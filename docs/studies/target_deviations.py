@@ -10,9 +10,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from driveline.fmus.child_process import run
-from driveline.fmus.native.compiler import CompilerError
-from driveline.fmus.target.image import BOARD, COMPILER, FLAGS, LINK, PROCESSOR, SCHEDULER, require_packages, written
+from fmublocks.native.compiler import CompilerError
+from fmublocks.target.image import BOARD, COMPILER, FLAGS, LINK, PROCESSOR, SCHEDULER, require_packages, written
+from toolground.child_process import run
 
 CHECKER = "cppcheck"
 

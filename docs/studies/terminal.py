@@ -2,8 +2,8 @@
 
 from rich.table import Table as Printed
 
-from driveline.harness.base.plain_text import printed
 from driveline.harness.views.terminal import print_table
+from toolground.plain_text import printed
 
 from .study import Table, number
 

@@ -5,7 +5,6 @@ Costs are over those of the gains that are computed for the car; the defaults of
 
 from collections.abc import Iterable, Sequence
 
-from driveline.harness.base.progress import progress
 from driveline.harness.design.search.controller_cost import Costs
 from driveline.harness.design.search.cost_evaluation import CostEvaluation
 from driveline.harness.design.search.parameter_search import Evaluated, Search, best
@@ -14,6 +13,7 @@ from driveline.harness.design.search.search_space import Space, declared_paramet
 from driveline.harness.design.search.tuning_runs import RUNS, Run
 from driveline.harness.loop.places import COMPARATORS, PLACES
 from driveline.harness.loop.settings import Settings
+from toolground.progress import progress
 
 from .study import Cell, Column, Measured, Study, Table
 

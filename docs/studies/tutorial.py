@@ -4,18 +4,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from driveline.fmus.building.parameter_files import read_vehicle
-from driveline.harness.cosimulation.results import Results
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.for_car import for_car, given_torque
 from driveline.harness.metrics.evaluate import at_samples, evaluate
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.run_figure import run_drawing
 from driveline.harness.views.signal_lines import WITHOUT
 from driveline.harness.views.step_figure import step_drawing
+from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 
 from .data_file import ROOT
 from .design_trials import own_gains

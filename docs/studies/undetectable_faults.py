@@ -12,8 +12,8 @@ import numpy as np
 
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, step
 from driveline.harness.metrics.spectrum import band_rms
-from driveline.harness.simulation.many_runs import run_many
 from driveline.models.controller.supervision import FALLBACK
+from fmuloop.many_runs import run_many
 
 from . import monolithic
 from .study import Cell, Column, Measured, Study, Table

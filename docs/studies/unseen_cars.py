@@ -21,10 +21,10 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.for_car import for_car
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.models.comparators.speed_washout import WashoutParameters
 from driveline.models.physics.vehicle import CAR
+from fmuloop.many_runs import run_many
 
 from .design_trials import mean
 from .goals import STEPS

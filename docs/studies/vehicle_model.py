@@ -7,8 +7,8 @@ from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.many_runs import run_many
 
 from .results import COLUMNS, metrics_cells
 from .study import Measured, Study, Table

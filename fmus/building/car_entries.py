@@ -4,8 +4,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from textwrap import wrap
 from typing import Any, NamedTuple
 
+from fmublocks.description.variables import Variable
+
 from ..catalogue import FMUS
-from ..description.variables import Variable
 from .estimates import HEAVIEST, LAWS, law
 from .one_car import DAMPERS, FOLLOW, INSTEAD, MEASURED, SHAFTS, WHEELS, WITH_MASS, of_one_car, told_by_others
 from .parameter_files import car_names, declarations, of_vehicle

@@ -21,10 +21,11 @@ from functools import cache
 from math import exp, log, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
+from fmublocks.block.declaration import Real, variables
+from fmublocks.block.types import ContinuousBlock
+from fmublocks.description.variables import Variable, interface
+
 from ...models import motor_torque_loop, two_mass_driveline, validation_vehicle
-from ...models.block.declaration import Real, variables
-from ...models.block.types import ContinuousBlock
-from ..description.variables import Variable, interface
 from ..errors import NoSuchCar, ParameterFileError
 from .estimates import LAWS, SHEET, estimated, law
 

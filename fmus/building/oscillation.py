@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...models.block.types import ContinuousBlock
+from fmublocks.block.types import ContinuousBlock
 
 SPEED = 15.0 / 3.6
 """In m/s, at which frequency and damping ratio of a car are given: slow, where tyres damp little."""

@@ -11,15 +11,17 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...models.block.declaration import Integer, Real
+from fmublocks.block.declaration import Integer, Real
+from fmublocks.description.variables import LARGEST, Variable, interface
+from fmublocks.fmu import Fmu
+from toolground.known_names import meant
+from toolground.toml_file import toml_entries
+from toolground.unit_conversion import quantity
+from toolground.written_numbers import real
+
 from ..catalogue import EVERY, FMUS
-from ..description.variables import LARGEST, Variable, interface
 from ..errors import NoSuchCar, ParameterFileError
-from ..fmu import Fmu
-from ..names import RENAMED, meant
-from ..toml_file import toml_entries
-from ..unit_conversion import quantity
-from ..written_numbers import real
+from ..names import RENAMED
 from .estimates import SHEET
 from .one_car import MEASURED, of_one_car
 

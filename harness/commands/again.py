@@ -19,9 +19,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..base.command_line import PROGRAM
-from ..base.errors import DrivelineError
-from ..base.plain_text import plain
+from toolground.errors import UserError
+from toolground.plain_text import plain
+
 from .arguments import filled, positional, record
 from .options import Replacing
 from .printing import Printing
@@ -52,7 +52,7 @@ def run(args: Arguments) -> int:
         if found is None:
             records = sorted(path.name for path in Path(folder).glob("*.json"))
             made = f"but {' and '.join(records)}; was it renamed?" if records else f"and ended with exit code {code}"
-            raise DrivelineError(f"{args.made}: its command made no {args.made.name}, {made}")
+            raise UserError(f"{args.made}: its command made no {args.made.name}, {made}")
         now = read_record(found)
         for difference in different_origin(before, now):
             print(f"made differently: {plain(difference)}")
@@ -71,18 +71,16 @@ def _command(before: Mapping[str, Any], name: str) -> tuple[Callable[[Any], int]
     """What the command of a record runs, and its arguments.
 
     Raises:
-        DrivelineError: it is no command of ours, or cannot be run where it ran.
+        UserError: it is no command of ours, or cannot be run where it ran.
     """
     from .cli import parser
 
     command_line, cwd = before["command_line"], Path(before["folder"])
     program, *words = shlex.split(command_line)
-    if program != PROGRAM:
-        raise DrivelineError(f"it was made by another program, which can make it again: {plain(command_line)}")
+    if program != "driveline":
+        raise UserError(f"it was made by another program, which can make it again: {plain(command_line)}")
     if not cwd.is_dir():
-        raise DrivelineError(
-            f"it was made in the folder {cwd}, which is not there; its command: `{plain(command_line)}`"
-        )
+        raise UserError(f"it was made in the folder {cwd}, which is not there; its command: `{plain(command_line)}`")
     with chdir(cwd), redirect_stdout(io.StringIO()):
         try:
             parsed = parser().parse_args(words)
@@ -92,7 +90,7 @@ def _command(before: Mapping[str, Any], name: str) -> tuple[Callable[[Any], int]
                 raise
             given = None  # it asks for help
     if not isinstance(given, Replacing):  # others build, serve, or run what is no FMU
-        raise DrivelineError(f"the command of {name}.json makes no result of runs: {plain(command_line)}")
+        raise UserError(f"the command of {name}.json makes no result of runs: {plain(command_line)}")
     return parsed.found.run, given
 
 

@@ -42,7 +42,7 @@ def option(
     Args:
         default: of what is typed, and of the field, unless `read` makes another value of it.
         parse: of a typed word the value; raises ArgumentTypeError.
-        read: of the parsed value that of the field, once all options are right; raises DrivelineError.
+        read: of the parsed value that of the field, once all options are right; raises UserError.
         group: heading in the help.
         exclusive: it does not go together with the others of which this is said.
         complete: what completes the value, for shtab.
@@ -98,7 +98,7 @@ def filled(record: type[R], args: Namespace) -> R:
     """The record with what was typed.
 
     Raises:
-        DrivelineError: a value is none that the command can take.
+        UserError: a value is none that the command can take.
     """
     values: Mapping[str, Any] = vars(args)
     given = {}

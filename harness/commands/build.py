@@ -17,11 +17,13 @@ examples:
 from contextlib import closing
 from pathlib import Path
 
-from ...fmus.building.builds import BUILDS, FMI3_FOLDER, FMIS, PLATFORMS, build_fmus
+from fmublocks.builds import BUILDS, FMI3_FOLDER, FMIS, PLATFORMS
+from fmublocks.origin import NATIVE_FOLDER
+from toolground.atomic_files import unchanged_if_stopped
+
+from ...fmus.building.builds import build_fmus
 from ...fmus.catalogue import FMUS
 from ...fmus.names import COMPARATORS
-from ...fmus.origin import NATIVE_FOLDER
-from ..base.atomic_files import unchanged_if_stopped
 from ..loop.places import BUILD
 from .arguments import option, positional
 from .options import ParameterFiles, output_folder, record

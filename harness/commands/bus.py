@@ -14,7 +14,8 @@ examples:
 
 from pathlib import Path
 
-from ...fmus.building.builds import PLATFORMS
+from fmublocks.builds import PLATFORMS
+
 from ..loop.places import PLACES
 from .arguments import option
 from .options import file_of, output, record
@@ -36,7 +37,8 @@ class Arguments(Printing):
 
 
 def run(args: Arguments) -> int:
-    from ...fmus.building.builds import sender_builder
+    from fmublocks.builds import sender_builder
+
     from ...fmus.building.parameter_files import read_vehicle
     from ...fmus.catalogue import FMUS
     from ..exchange.bus.database import dbc, telegrams, write_dbc

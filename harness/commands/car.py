@@ -19,7 +19,8 @@ examples:
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from .analyse import finite
 from .arguments import option, positional
 from .options import Replacing, file, file_of, record
@@ -42,7 +43,7 @@ def run(args: Arguments) -> int:
     if args.template:
         return _template(args)
     if args.output is not None:
-        raise DrivelineError("--output is for a template: give --template")
+        raise UserError("--output is for a template: give --template")
     from ...fmus.building.car_entries import car_entries
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
     from ..design.design import design
@@ -73,7 +74,7 @@ def _template(args: Arguments) -> int:
     from ...fmus.building.car_entries import template
 
     if args.vehicle is not None or args.parameters is not None or args.json or args.all:
-        raise DrivelineError("--template writes the default car: it goes with --output and --replace alone")
+        raise UserError("--template writes the default car: it goes with --output and --replace alone")
     if args.output is None:
         print(template(), end="")
         return 0

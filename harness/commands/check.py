@@ -18,21 +18,22 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..base.plain_text import quoted
+from toolground.plain_text import quoted
+
 from .arguments import option, positional
 from .options import ForeignLimits, record
 from .printing import JsonPrinting
 
 if TYPE_CHECKING:
-    from ..exchange.compliance.rule import Verdict
+    from fmucheck.rule import Verdict
 
 FORMATS = ("text", "json", "junit")
 
 
 def _rule(text: str) -> str:
     """The name of a rule."""
-    from ..base.known_names import nearest
-    from ..exchange.compliance.check import RULES
+    from fmucheck.check import RULES
+    from toolground.known_names import nearest
 
     names = [rule.name for rule in RULES]
     if text not in names:
@@ -53,8 +54,8 @@ class Arguments(ForeignLimits, JsonPrinting):
 
 
 def run(args: Arguments) -> int:
-    from ..exchange.compliance.check import check
-    from ..exchange.compliance.rule import Severity
+    from fmucheck.check import check
+    from fmucheck.rule import Severity
 
     style = "json" if args.json else args.format or FORMATS[0]
     checks = {path: check(path, args.limits, args.quick, args.ignore) for path in args.fmus}  # all files are there
@@ -92,7 +93,7 @@ def _print_summary(
         fmus = [{"fmu": name, "verdicts": [v._asdict() for v in verdicts]} for name, verdicts in found.items()]
         print(json.dumps({"findings": sum(counts.values()), **counts, "fmus": fmus}, indent=2))
     elif style == "junit":
-        from ..exchange.compliance.junit import junit
+        from fmucheck.junit import junit
 
         print(junit(found, failing))
     elif not quiet:

@@ -18,13 +18,13 @@ from io import TextIOWrapper
 from typing import Any, NamedTuple, NoReturn
 from unicodedata import category
 
-from ..base import command_line
-from ..base.errors import DrivelineError
-from ..base.interruption import STDOUT, forget_stdout, named_stdout, reopen_closed_streams, stoppable, unswallowed
-from ..base.known_names import nearest
-from ..base.plain_text import plain, quoted, reason
-from ..base.progress import hidden
-from ..base.status_line import waiting
+from toolground import command_line
+from toolground.errors import UserError
+from toolground.interruption import STDOUT, forget_stdout, named_stdout, reopen_closed_streams, stoppable, unswallowed
+from toolground.known_names import nearest
+from toolground.plain_text import plain, quoted, reason
+from toolground.progress import hidden
+from toolground.status_line import waiting
 
 PURPOSES = {
     "run": {
@@ -277,14 +277,16 @@ def run(args: argparse.Namespace) -> int:
     """Runs the command of the arguments; returns its exit code.
 
     Raises:
-        DrivelineError: the user can mend what is wrong.
+        UserError: the user can mend what is wrong.
     """
     if getattr(args, "list", False):
         from .manoeuvres import print_manoeuvres
 
         print_manoeuvres(getattr(args, "json", False))
         return 0
-    from ...fmus.errors import BuildError, NoSuchCar
+    from fmublocks.errors import BuildError
+
+    from ...fmus.errors import NoSuchCar
     from .arguments import filled
 
     try:
@@ -293,9 +295,9 @@ def run(args: argparse.Namespace) -> int:
         from ...fmus.building.parameter_files import in_file
 
         path = getattr(args, "vehicle", None)
-        raise DrivelineError(str(in_file(refusal, path) if path else refusal)) from refusal
+        raise UserError(str(in_file(refusal, path) if path else refusal)) from refusal
     except BuildError as refusal:
-        raise DrivelineError(str(refusal)) from refusal
+        raise UserError(str(refusal)) from refusal
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -307,7 +309,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     name, words = "driveline", list(sys.argv[1:] if arguments is None else arguments)
     if words[:1] == ["help"]:
         words = [*words[1:], "--help"]
-    command_line.words.set(words)
+    command_line.words.set(["driveline", *words])
     reopen_closed_streams()
     if isinstance(sys.stdout, TextIOWrapper):
         # who reads a pipe need not wait for the end either, and not every terminal has a middle dot
@@ -326,14 +328,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError as gone:
         forget_stdout()  # the reader has gone
         return int(gone.__context__.code or 0) if isinstance(gone.__context__, SystemExit) else 1
-    except DrivelineError as error:
+    except UserError as error:
         print(f"{name}: {error}", file=sys.stderr)
         return error.exit_code
     except OSError as error:
         if error.filename == STDOUT:
             forget_stdout()
         elif error.errno == ENOSPC and error.filename is None:  # whoever writes results names them
-            from ...fmus.errors import full_disk
+            from toolground.errors import full_disk
 
             error = full_disk()
         print(f"{name}: {reason(error)}", file=sys.stderr)
@@ -353,9 +355,9 @@ UNPRINTABLE = {"Cc": "control characters", "Zl": "line ends", "Zp": "line ends",
 def _require_printable(words: Sequence[str]) -> None:
     """
     Raises:
-        DrivelineError: a word, as the path of a file, would be no plain line in the messages, tables and names of files
+        UserError: a word, as the path of a file, would be no plain line in the messages, tables and names of files
             that repeat it.
     """
     for word in words:
         if found := next((UNPRINTABLE[c] for c in map(category, word.replace("\t", "")) if c in UNPRINTABLE), None):
-            raise DrivelineError(f"the argument {word[:60]!r} has {found}; rename the file")
+            raise UserError(f"the argument {word[:60]!r} has {found}; rename the file")

@@ -20,7 +20,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from ..loop.places import PLANTS
 from .design_search import Search, require_search, run_search
 from .options import file_of, record
@@ -44,7 +45,7 @@ class Arguments(Search):
 def run(args: Arguments) -> int:
     if args.search is not None:
         if args.parameters is not None:
-            raise DrivelineError("--parameters has limits for computed gains: leave it out, or --search")
+            raise UserError("--parameters has limits for computed gains: leave it out, or --search")
         return run_search(args, args.search)
     require_search(args)
     from ..design.unknowns import unknowns_line

@@ -7,7 +7,8 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from ..loop.places import BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..loop.settings import Settings
 from .arguments import option, record
@@ -66,21 +67,22 @@ def require_search(args: Search) -> None:
     """Refuses options of a search without one.
 
     Raises:
-        DrivelineError: names the first.
+        UserError: names the first.
     """
     for name in (*DEFAULTS, "scheduler", "build"):
         if name != "character" and getattr(args, name) is not None:
-            raise DrivelineError(f"--{name} is for a search: give the folder of one, --search FOLDER")
+            raise UserError(f"--{name} is for a search: give the folder of one, --search FOLDER")
 
 
 def run_search(args: Search, folder: Path) -> int:
     # here and not above: mistakes and help are answered without them
+    from fmuloop.executors import dask_executor
+
     from ...fmus.building.parameter_files import read_vehicle
     from ..design.search.cost_evaluation import CostEvaluation
     from ..design.search.pareto_figure import choices_table, plot_front
     from ..design.search.search_space import space
     from ..design.search.tune import EVALUATIONS, RECORD, tune
-    from ..simulation.executors import dask_executor
     from ..views.terminal import print_table
 
     controller, evaluations, character, number = (

@@ -13,7 +13,8 @@ examples:
 
 from pathlib import Path
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from ..loop.places import PLACES
 from ..manoeuvres.catalogue import MANOEUVRES
 from .arguments import option
@@ -37,20 +38,21 @@ class Arguments(Headings, Listing, Loop, Printing):
 def run(args: Arguments) -> int:
     cut = args.from_ is not None or args.to is not None
     if args.recording is None and (cut or args.dbc or args.column or args.aliases):
-        raise DrivelineError("--from, --to, --dbc, --column and --aliases are for a RECORDING; none is given")
+        raise UserError("--from, --to, --dbc, --column and --aliases are for a RECORDING; none is given")
     offered, recording = args.manoeuvre.beside(MANOEUVRES), None
     blocks = {"plant": args.plant, "controller": args.controller, "motor": [args.motor], "can": [args.can]}
     others = [Path(name) for place, names in blocks.items() for name in names if name not in PLACES[place]]
     # here and not above: mistakes and help are answered without them
     import webbrowser
 
+    from driverecords.drive import read_drive
+    from driverecords.plausibility import of_drive
+    from fmuloop.interface import Interface
+
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
-    from ..cosimulation.interface import Interface
     from ..explorer.content import content, write_page
     from ..explorer.module import require_possible, sources_of
     from ..manoeuvres.for_car import largest_torque
-    from ..recordings.drive import read_drive
-    from ..recordings.plausibility import of_drive
     from ..studies.drives.replay import car_of
     from ..studies.drives.verdict import tell
 

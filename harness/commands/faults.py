@@ -29,7 +29,8 @@ from .printing import JsonPrinting
 from .settings import caption, plants_settings, say_unknowns
 
 if TYPE_CHECKING:
-    from ..cosimulation.system import System
+    from fmuloop.system import System
+
     from ..studies.faults.fault_campaign import Outcome
     from ..studies.faults.fault_injection import FaultRunner
 
@@ -66,7 +67,8 @@ def run(args: Arguments) -> int:
 
 
 def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
-    from ..simulation.executors import dask_executor
+    from fmuloop.executors import dask_executor
+
     from ..studies.faults.fault_campaign import campaign, table
     from ..studies.faults.fault_campaign import distinguishing as of_the_cases
     from ..studies.faults.fault_cases import PLANS

@@ -29,7 +29,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.optional_packages import required
+from toolground.optional_packages import required
+
 from .arguments import option
 from .identify_step import run_step
 from .jobs import job
@@ -38,8 +39,9 @@ from .printing import Printing
 from .recorded import Recorded, examples, recording
 
 if TYPE_CHECKING:
+    from driverecords.measurement import Measurement
+
     from ..identification.identify import Identified
-    from ..recordings.measurement import Measurement
     from ..views.figure_options import FigureOptions
 
 FREE = ("J_1",)
@@ -72,9 +74,10 @@ class Arguments(Recorded, Figures, Replacing, Report, Printing):
 
 def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
+    from driverecords.measurement import read_measurement
+
     from ...fmus.building.parameter_files import read_vehicle
     from ..design.design_weights import records
-    from ..recordings.measurement import read_measurement
 
     vehicle = read_vehicle(args.vehicle) if args.vehicle else {}
     output = args.output or args.usual_output
@@ -83,7 +86,7 @@ def run(args: Arguments) -> int:
     if args.step:
         return run_step(args, recording, vehicle, output)
     options = args.options("", (recording.name, float(recording.time[0]), float(recording.time[-1])))
-    required("casadi", "identifying a model", "identification")
+    required("casadi", "identifying a model", "driveline-damping[identification]")
     from ..identification import car_file, identification_report_html
     from ..identification.prior_knowledge import identify
     from .redesign import compared_in, redesign
@@ -117,7 +120,8 @@ def write(identified: "Identified", recording: Path, vehicle: Mapping[str, Any],
     Args:
         vehicle: entries of the vehicle file that was known before.
     """
-    from ..base.atomic_files import write_text
+    from toolground.atomic_files import write_text
+
     from ..identification import car_file
 
     program = f"`driveline identify` (driveline-damping {version('driveline-damping')})"

@@ -6,13 +6,15 @@ from math import exp
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from .jobs import job
 from .redesign import compared_in, redesign
 
 if TYPE_CHECKING:
+    from driverecords.measurement import Measurement
+
     from ..identification.step import Step
-    from ..recordings.measurement import Measurement
 
 WIDEST = 0.5
 """Half of a 95 % interval, in the logarithm, up to which a parameter is one of a vehicle file."""
@@ -22,16 +24,17 @@ def run_step(args: Any, recording: "Measurement", vehicle: Mapping[str, Any], ou
     """Identifies C and phi_B, says so, and writes them into a vehicle file.
 
     Raises:
-        DrivelineError: an option is not for a step.
+        UserError: an option is not for a step.
         RecordingError: the recording has no step that can be used, or C is not known well enough.
     """
     if args.free or args.report:
-        raise DrivelineError(f"--step gives C and phi_B alone: leave {'--free' if args.free else '--report'} out")
+        raise UserError(f"--step gives C and phi_B alone: leave {'--free' if args.free else '--report'} out")
+    from driverecords.source import RecordingError
+    from toolground.atomic_files import write_text
+
     from ...fmus.building.car_entries import vehicle_text
     from ...fmus.building.one_car import updated
-    from ..base.atomic_files import write_text
     from ..identification.step import identify_step
-    from ..recordings.source import RecordingError
 
     runs, same = compared_in(), args.distinguishing | {"vehicle": vehicle, "step": True}
     with job(args, output.with_suffix(".json"), same, {}, [output], args.read) as made:

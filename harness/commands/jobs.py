@@ -11,9 +11,10 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from .printing import Printing
 
 if TYPE_CHECKING:
-    from ..cosimulation.results import Results
-    from ..cosimulation.system import System
-    from ..cosimulation.wiring import Fit
+    from fmuloop.results import Results
+    from fmuloop.system import System
+    from fmuloop.wiring import Fit
+
     from ..simulation.case_archive import Campaign, CaseArchive, Table
     from ..simulation.provenance import Made
 
@@ -97,7 +98,7 @@ def job(
         read: files that it reads beside the FMUs and those of --vehicle and --parameters.
 
     Raises:
-        DrivelineError: there are results of another run; nothing has been run.
+        UserError: there are results of another run; nothing has been run.
     """
     from ..simulation.provenance import content, recorded
 
@@ -126,9 +127,10 @@ def campaign_job(
         table: what the lines of the archive are.
 
     Raises:
-        DrivelineError: there are results of another campaign; nothing has been run.
+        UserError: there are results of another campaign; nothing has been run.
     """
-    from ..cosimulation.wiring import fit
+    from fmuloop.wiring import fit
+
     from ..simulation.case_archive import resumable
 
     reports, wired = _reports(args), _wired(systems)
@@ -147,8 +149,9 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
     Args:
         manoeuvre: None: several.
     """
-    from ...fmus.origin import origin_of
-    from ..base.digest import digest
+    from fmublocks.origin import origin_of
+    from toolground.digest import digest
+
     from ..loop.fmu_cache import as_built
     from ..simulation.simulate import start
 
@@ -171,8 +174,8 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
 
 def _warn_of_absent(args: Printing, fits: "Mapping[str, Fit]") -> None:
     """Before any worker does: once a command, and with --quiet not at all."""
-    from ..base.collected_warnings import as_if_logged
-    from ..cosimulation.loading import warn_of_absent
+    from fmuloop.loading import warn_of_absent
+    from toolground.collected_warnings import as_if_logged
 
     with as_if_logged(args.quiet):
         for fitted in fits.values():

@@ -7,9 +7,10 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..base.errors import DrivelineError
-from ..base.known_names import nearest
-from ..base.plain_text import plain
+from toolground.errors import UserError
+from toolground.known_names import nearest
+from toolground.plain_text import plain
+
 from ..loop.places import PLANTS
 from ..loop.settings import Settings
 from ..manoeuvres.catalogue import MANOEUVRES
@@ -56,10 +57,10 @@ class Chosen(NamedTuple):
         """These, then those of others that are not among them.
 
         Raises:
-            DrivelineError: another one has the name of one of these.
+            UserError: another one has the name of one of these.
         """
         if same := next((name for name in self.files if name in others), None):
-            raise DrivelineError(f"two manoeuvres are called {same}; rename the file of one")
+            raise UserError(f"two manoeuvres are called {same}; rename the file of one")
         return self._replace(manoeuvres={**self.manoeuvres, **others})
 
 
@@ -69,13 +70,13 @@ def chosen(texts: Iterable[str]) -> Chosen:
         texts: names of the catalogue and files.
 
     Raises:
-        DrivelineError: a file is refused; two manoeuvres have the same name.
+        UserError: a file is refused; two manoeuvres have the same name.
     """
     found: dict[str, Manoeuvre] = {}
     for text in dict.fromkeys(texts):
         manoeuvre = MANOEUVRES[text] if text in MANOEUVRES else _of_file(Path(text))
         if found.setdefault(manoeuvre.name, manoeuvre) is not manoeuvre:
-            raise DrivelineError(f"two manoeuvres are called {manoeuvre.name}; rename the file of one")
+            raise UserError(f"two manoeuvres are called {manoeuvre.name}; rename the file of one")
     return Chosen(found, {Path(text).stem: Path(text) for text in texts if text not in MANOEUVRES})
 
 

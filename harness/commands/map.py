@@ -10,7 +10,8 @@ examples:
 
 from pathlib import Path
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from ..loop.places import OPTIONAL, PLACES
 from .arguments import option, positional
 from .options import Replacing, file_of, record
@@ -27,14 +28,15 @@ class Arguments(Replacing, JsonPrinting):
 
 
 def run(args: Arguments) -> int:
-    from ..cosimulation.interface import Interface
+    from fmuloop.interface import Interface
+
     from ..exchange.mapping_draft import NO_UNIT, as_toml, draft, missing
 
     proposals = draft(Interface(args.fmu), args.place)
     needed = [each for each in proposals if each.port.name not in OPTIONAL]
     if all(each.theirs is None for each in needed):
         names = ", ".join(each.port.variable for each in needed)
-        raise DrivelineError(f"{args.fmu}: nothing in it fits a {args.place}, which has {names}")
+        raise UserError(f"{args.fmu}: nothing in it fits a {args.place}, which has {names}")
     text = as_toml(proposals, args.fmu.name, args.place)
     if args.output is not None:
         write_toml(text, args.output, args.replace)

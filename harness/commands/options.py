@@ -9,12 +9,13 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from ...fmus.written_numbers import real, whole
-from ..base.errors import DrivelineError
-from ..base.known_names import nearest
-from ..base.parameter_words import FORMS, said
-from ..base.plain_text import plain, quoted
-from ..cosimulation.limits import USUAL_LIMITS, Limits
+from fmuloop.limits import USUAL_LIMITS, Limits
+from toolground.errors import UserError
+from toolground.known_names import nearest
+from toolground.plain_text import plain, quoted
+from toolground.written_numbers import real, whole
+
+from ..loop.parameter_words import FORMS, said
 from ..loop.places import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..views.figure_options import KINDS, USUAL_KINDS, FigureOptions
 from ..views.signals_file import FORMATS
@@ -284,7 +285,7 @@ class ForeignLimits:
 
 
 def _mapping(texts: tuple[str, ...]) -> Mapping[str, str]:
-    from ..cosimulation.mapping import parsed
+    from fmuloop.mapping import parsed
 
     return parsed(texts)
 
@@ -383,12 +384,12 @@ class Figures:
             spans: what the figures show, in words, and from and to when in s there is something to be seen.
 
         Raises:
-            DrivelineError: the window shows nothing of one of them.
+            UserError: the window shows nothing of one of them.
         """
         for what, start, end in spans:
             if self.window and not (self.window[0] < end and self.window[1] > start):
                 given = ",".join(f"{t:g}" for t in self.window)
-                raise DrivelineError(f"--window {given}: {what} is from {start:g} to {end:g} s")
+                raise UserError(f"--window {given}: {what} is from {start:g} to {end:g} s")
         return FigureOptions(caption, self.window, tuple(dict.fromkeys(self.figures or USUAL_KINDS)))
 
 

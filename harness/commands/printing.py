@@ -50,7 +50,8 @@ class JsonPrinting(Printing):
 
 def write_toml(text: str, path: Path, replace: bool) -> None:
     """Writes a vehicle file or one of gains; one with another content only if it may be replaced."""
-    from ..base.atomic_files import write_text
+    from toolground.atomic_files import write_text
+
     from ..simulation.provenance import require_same_text
 
     if not replace:

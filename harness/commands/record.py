@@ -22,7 +22,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..base.plain_text import quoted
+from toolground.plain_text import quoted
+
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
 from .arguments import option
 from .options import amount, counted, finite, output, record, seconds

@@ -5,13 +5,14 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from ...fmus.written_numbers import real
-from ..base.errors import DrivelineError
-from ..base.known_names import nearest
-from ..base.plain_text import quoted
-from ..recordings.clock_times import Clock, read_clock
-from ..recordings.quantities import QUANTITIES, aliases, example
-from ..recordings.time_base import Cut
+from driverecords.clock_times import Clock, read_clock
+from driverecords.quantities import QUANTITIES, aliases, example
+from driverecords.time_base import Cut
+from toolground.errors import UserError
+from toolground.known_names import nearest
+from toolground.plain_text import quoted
+from toolground.written_numbers import real
+
 from .arguments import option, positional
 from .options import record
 
@@ -74,9 +75,7 @@ class Headings:
         by_quantity: dict[str, str] = {}
         for quantity, heading in self.column:
             if by_quantity.setdefault(quantity, heading) != heading:
-                raise DrivelineError(
-                    f"--column {quantity}: {by_quantity[quantity]} and {heading} are given; it can be one"
-                )
+                raise UserError(f"--column {quantity}: {by_quantity[quantity]} and {heading} are given; it can be one")
         cut = Cut(self.from_, self.to)
         return {"columns": by_quantity, "names": self.aliases, "databases": self.dbc, "cut": cut}
 
@@ -95,7 +94,7 @@ class Recorded(Headings):
     @property
     def distinguishing(self) -> dict[str, Any]:
         """What distinguishes a run by these files, which have been read, and by what the columns are said to be."""
-        from ..base.digest import digest
+        from toolground.digest import digest
 
         given = {"databases": self.dbc, "aliases": self.aliases}
         others = {name: [digest(path) for path in paths] for name, paths in given.items() if paths}

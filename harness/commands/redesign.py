@@ -18,7 +18,7 @@ def compared_in() -> Settings:
     """Settings of the runs in which controllers are compared, whose FMUs are there then.
 
     Raises:
-        DrivelineError: they cannot be built.
+        UserError: they cannot be built.
     """
     return built_together(Settings(plant) for plant in PLANTS)[0]
 
@@ -35,7 +35,7 @@ def redesign(car: Path, vehicle: Mapping[str, Any], settings: Settings, replace:
 
     Raises:
         DesignError: there is no controller for this car.
-        DrivelineError: there are other gains.
+        UserError: there are other gains.
         BuildError: the vehicle file has what the controller cannot be set to, or the controller cannot be built.
     """
     from ...fmus.building.builds import build_fmus

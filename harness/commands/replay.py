@@ -26,7 +26,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
 from ..metrics.run_metrics import RideMetrics
@@ -39,9 +40,10 @@ from .recorded import Recorded, examples, recording
 from .settings import all_settings, caption
 
 if TYPE_CHECKING:
+    from driverecords.drive import Drive
+    from driverecords.findings import Finding
+
     from ..manoeuvres.road_load import RoadLoad, Track
-    from ..recordings.drive import Drive
-    from ..recordings.findings import Finding
     from ..studies.drives.replay import Ride
 
 IN_HELP = {"columns": ", ".join(examples("time", "v", "elevation", "T_mot")), "metrics": legend(RideMetrics)}
@@ -60,15 +62,16 @@ class Arguments(Recorded, Loop, Replacing, SignalsFormat, Figures, Report, JsonP
 
 def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
+    from driverecords.drive import read_drive
+    from driverecords.plausibility import of_drive
+
     from ..manoeuvres.road_load import Track
     from ..manoeuvres.speed_following import require_held
-    from ..recordings.drive import read_drive
-    from ..recordings.plausibility import of_drive
     from ..studies.drives.replay import car_of
     from ..studies.drives.verdict import tell
 
     if args.look and args.report:
-        raise DrivelineError("--look runs nothing, so that there is nothing to --report")
+        raise UserError("--look runs nothing, so that there is nothing to --report")
     require_held(args.held)
     recording = read_drive(args.recording, **args.as_read)
     same = args.distinguishing | {"held": args.held} | args.other_format

@@ -49,7 +49,8 @@ def run(args: Arguments) -> int:
 
 
 def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
-    from ..simulation.executors import dask_executor
+    from fmuloop.executors import dask_executor
+
     from ..studies.robustness.robustness_campaign import RUNS, campaign, order
     from ..studies.robustness.robustness_report import write
 

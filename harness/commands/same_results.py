@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...fmus.names import meant
-from ..base.digest import digest
-from ..base.errors import DrivelineError
+from toolground.digest import digest
+from toolground.errors import UserError
+from toolground.known_names import meant
+
 from ..simulation.provenance import differences
 from ..views.figure_options import KINDS
 
@@ -29,17 +30,17 @@ def read_record(path: Path) -> Mapping[str, Any]:
     """The record beside a result.
 
     Raises:
-        DrivelineError: it is none, or one from which nothing can be made again.
+        UserError: it is none, or one from which nothing can be made again.
     """
     if not path.is_file():
         records = map(str, sorted((path if path.is_dir() else path.parent).glob("*.json")))
         near = f"did you mean {' or '.join(records)}?" if path.is_dir() else meant(str(path), records)
         what = f"{path} is a folder" if path.is_dir() else f"there is no file {path}"
-        raise DrivelineError("; ".join(filter(None, (what, near))))
+        raise UserError("; ".join(filter(None, (what, near))))
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:
-        raise DrivelineError(f"{path} is no record of a result: it is not JSON") from error
+        raise UserError(f"{path} is no record of a result: it is not JSON") from error
     try:
         complete = isinstance(content["files"], dict) and {*MADE_BY, "command_line", "folder", "fmus"} <= content.keys()
         if complete:
@@ -48,7 +49,7 @@ def read_record(path: Path) -> Mapping[str, Any]:
     except (ValueError, KeyError, TypeError, AttributeError):
         complete = False
     if not complete:
-        raise DrivelineError(f"{path} is no record of a result, or one of an earlier version, that names no digests")
+        raise UserError(f"{path} is no record of a result, or one of an earlier version, that names no digests")
     return content
 
 

@@ -7,9 +7,8 @@ from pathlib import Path
 from shlex import quote
 from typing import Any
 
-from ..base.known_names import by_name
-from ..base.parameter_words import said
-from ..loop.places import PLACES, PLANTS
+from ..loop.parameter_words import said
+from ..loop.places import PLACES, PLANTS, by_name
 from ..loop.settings import Settings, loop
 from ..views.metrics_table import DAMPINGS
 from .options import Loop
@@ -26,7 +25,7 @@ def settings(args: Loop, plant: str, controller: str, **run: Any) -> Settings:
     Raises:
         WiringError: a text of --map is not of the form that it must have, or the FMUs do not have a parameter, or not
             with that value.
-        DrivelineError: an FMU is missing.
+        UserError: an FMU is missing.
         ParameterFileError: a file of parameters is refused.
     """
     from ..loop.given_parameters import built_with  # mistakes and help are answered without
@@ -57,7 +56,7 @@ def warn_of_gains(vehicle: Path | None, parameters: Path | None, loops: Iterable
     """Says that a car has the gains of another one, if a controller has such gains, or is the default car."""
     if vehicle is None:
         return
-    from ...fmus.toml_file import toml_entries
+    from toolground.toml_file import toml_entries
 
     if not toml_entries(vehicle):
         LOG.warning(f"{vehicle} has no parameter: the car is the default one (`driveline car --template` has them all)")
@@ -68,9 +67,10 @@ def warn_of_gains(vehicle: Path | None, parameters: Path | None, loops: Iterable
 def _has_gains(made: Settings) -> bool:
     if str(made.controller) in PLACES["controller"]:
         return True
+    from fmuloop.wiring import fit
+
     from ...fmus.building.parameter_files import car_names
     from ...fmus.catalogue import FMUS
-    from ..cosimulation.wiring import fit
 
     has = {variable.name for variable in fit(loop(made)).interfaces["controller"].of_causality("parameter")}
     return bool(has & {*FMUS["DampingController"].block.Parameters._fields} - {*car_names()})
@@ -87,11 +87,12 @@ def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) 
         controllers: none: all of the project.
 
     Raises:
-        WiringError, DrivelineError, ParameterFileError: as of `settings`; two plants or controllers have the same name,
+        WiringError, UserError, ParameterFileError: as of `settings`; two plants or controllers have the same name,
             or the file or a value is for none of them.
     """
-    from ..cosimulation.parameter_changes import parted
-    from ..cosimulation.wiring import find, fit, require
+    from fmuloop.parameter_changes import parted
+    from fmuloop.wiring import find, fit, require
+
     from ..loop.built_fmus import built_together
     from ..loop.given_parameters import NotTaken, require_of_plant, with_parameters
     from ..loop.mapped_names import mappings

@@ -5,8 +5,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import DrivelineError
-from ..base.optional_packages import required
+from toolground.errors import UserError
+from toolground.optional_packages import required
+
 from ..loop.places import PLACES
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -15,8 +16,8 @@ from .jobs import RunJob, distinguishing, job
 from .options import Loop, Replacing, SignalsFormat, controller, output, plant, record
 
 if TYPE_CHECKING:
-    from ..cosimulation.results import Results
-    from ..cosimulation.wiring import Fit
+    from fmuloop.results import Results
+    from fmuloop.wiring import Fit
 
 SENDERS = ("can", "motor")
 """The places whose blocks declare frames."""
@@ -49,7 +50,7 @@ def signals_job(
         run: what distinguishes it beside settings, manoeuvre and format.
 
     Raises:
-        DrivelineError: there are results of another run, or no frames where --frames asks for them.
+        UserError: there are results of another run, or no frames where --frames asks for them.
     """
     from ..views.signals_file import signals_path
 
@@ -81,10 +82,10 @@ def _require_frames(args: OneRun, own: frozenset[str]) -> None:
         own: the places in which there are blocks of ours.
 
     Raises:
-        DrivelineError: there are FMUs in the loop that declare no frames.
+        UserError: there are FMUs in the loop that declare no frames.
         MissingExtra: the packages are not installed.
     """
     if others := [place for place in SENDERS if place not in own]:
-        raise DrivelineError(f"--frames: {', '.join(getattr(args, place) for place in others)} declares no frames")
+        raise UserError(f"--frames: {', '.join(getattr(args, place) for place in others)} declares no frames")
     for package in ("can", "cantools"):
-        required(package, "a log of the bus", "recordings")
+        required(package, "a log of the bus", "driveline-damping[recordings]")

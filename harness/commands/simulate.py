@@ -14,8 +14,9 @@ examples:
 
 from pathlib import Path
 
-from ..base.errors import DrivelineError
-from ..cosimulation.system import Scheme
+from fmuloop.system import Scheme
+from toolground.errors import UserError
+
 from ..loop.places import STEP_SIZE
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..views.figure_options import FigureOptions
@@ -48,8 +49,9 @@ def run(args: Arguments) -> int:
     chosen = args.manoeuvre.for_car(given)
     manoeuvre = chosen.first
     # here and not above: mistakes and help are answered without them
-    from ..cosimulation.experiment import require_steps
-    from ..cosimulation.schedule import described, transfers
+    from fmuloop.experiment import require_steps
+    from fmuloop.schedule import described, transfers
+
     from ..manoeuvres.drivable import require_possible
     from ..metrics.evaluate import evaluate
     from ..simulation.simulate import simulate
@@ -93,8 +95,8 @@ def _options_of_figure(args: Arguments, manoeuvre: Manoeuvre) -> FigureOptions:
     """What was asked of the figure.
 
     Raises:
-        DrivelineError: there is none, or it would show nothing.
+        UserError: there is none, or it would show nothing.
     """
     if not args.plot and (args.window or args.figures):
-        raise DrivelineError(f"{'--window' if args.window else '--figures'} is for the figure; ask for it with --plot")
+        raise UserError(f"{'--window' if args.window else '--figures'} is for the figure; ask for it with --plot")
     return args.options(caption(args), (manoeuvre.name, 0.0, manoeuvre.duration))

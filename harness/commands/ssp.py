@@ -26,7 +26,8 @@ from .printing import Printing
 from .settings import plants_settings
 
 if TYPE_CHECKING:
-    from ..cosimulation.wiring import Fit
+    from fmuloop.wiring import Fit
+
     from ..exchange.ssp.package import Variant
 
 
@@ -40,11 +41,12 @@ class Arguments(Listing, Loop, Replacing, Printing):
 
 def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..cosimulation.parameter_changes import require_constant
+    from fmuloop.parameter_changes import require_constant
 
     require_constant(dict(args.set), "an SSP")
     given = plants_settings(args)
-    from ...fmus.archive import write_archive
+    from fmublocks.archive import write_archive
+
     from ...fmus.catalogue import MANOEUVRE
     from ..exchange.ssp.loop_with_source import with_source
     from ..exchange.ssp.package import package

@@ -11,8 +11,9 @@ examples:
 from contextlib import ExitStack
 from pathlib import Path
 
-from ..base.errors import DrivelineError
-from ..base.known_names import nearest
+from toolground.errors import UserError
+from toolground.known_names import nearest
+
 from ..loop.places import PLACES
 from .arguments import option
 from .jobs import distinguishing, job
@@ -39,8 +40,9 @@ class Export(OurController, Replacing, Printing):
 
 def export(args: Export) -> int:
     # here and not above: mistakes and help are answered without them
-    from ...fmus.target.sources import PRECISIONS, target_sources
-    from ..base.atomic_files import complete
+    from fmublocks.target.sources import PRECISIONS, target_sources
+    from toolground.atomic_files import complete
+
     from ..exchange.target.controllers import for_car
     from ..simulation.provenance import require_same_text
 
@@ -48,7 +50,7 @@ def export(args: Export) -> int:
     sources = target_sources(fmu, PRECISIONS[args.precision])
     files = {args.output / name: text for name, text in sources.items()}
     if folder := next((path for path in files if path.is_dir()), None):
-        raise DrivelineError(f"{folder} is a folder; a file is needed")
+        raise UserError(f"{folder} is a folder; a file is needed")
     if not args.replace:
         for path, text in files.items():
             require_same_text(text, path)
@@ -77,7 +79,8 @@ class Build(OurController, Printing):
 
 
 def build(args: Build) -> int:
-    from ...fmus.target.image import build_on_target
+    from fmublocks.target.image import build_on_target
+
     from ..exchange.target.controllers import for_car
 
     path = build_on_target(for_car(args.controller, args.vehicle, args.parameters), args.output)
@@ -134,7 +137,7 @@ class Record(Loop, Replacing, Printing):
 
 def run_record(args: Record) -> int:
     if args.controller not in PLACES["controller"]:
-        raise DrivelineError(f"there is no C of {args.controller}; {nearest(args.controller, PLACES['controller'])}")
+        raise UserError(f"there is no C of {args.controller}; {nearest(args.controller, PLACES['controller'])}")
     given = settings(args, args.plant, args.controller)
     # here and not above: mistakes and help are answered without them
     from ..exchange.target.record import NUMBERS, announce, record, write

@@ -9,8 +9,9 @@ from collections.abc import Mapping
 from math import inf, sqrt
 from typing import Any
 
+from fmublocks.description.variables import Variable
+
 from ...fmus.building.parameter_files import of_vehicle
-from ...fmus.description.variables import Variable
 from ...models.controller import T_S
 from .character import factors
 from .design_weights import (

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import Any, NamedTuple
 
+from fmublocks.description.variables import interface
+
 from ...fmus.building.one_car import of_one_car
-from ...fmus.description.variables import interface
 from ...models import motor_torque_loop, two_mass_driveline, wheel_speed_can
 from ...models.controller import T_S
 from ...models.damping_controller import BLOCK

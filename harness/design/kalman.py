@@ -9,16 +9,17 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import solve_discrete_are
 
+from toolground.errors import UserError
+
 from ...models.controller import T_S
 from ...models.controller.torque_estimator import Estimate, Parameters, integrated
-from ..base.errors import DrivelineError
 from .design_weights import Can, DriveTrain, Motor, Plant, Weights
 
 SAMPLES = 4000
 """After so many samples the periodic gains have settled to a share of 1e-6."""
 
 
-class DesignError(DrivelineError):
+class DesignError(UserError):
     """There is no controller for this car; the text says why."""
 
 

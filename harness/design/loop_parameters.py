@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ...fmus.building.own_file import fmu_of
+from ...fmus.building.builds import fmu_of
 from ...fmus.building.parameter_files import for_instances
 from ..loop.places import PLACES
 

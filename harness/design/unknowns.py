@@ -6,11 +6,12 @@ from math import inf, isnan
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from toolground.plain_text import printed
+
 from ...fmus.building.car_entries import Entry, car_entries
 from ...fmus.building.estimates import DECIDE
 from ...fmus.building.one_car import told_by_others, with_estimates
 from ...fmus.building.parameter_files import read_vehicle
-from ..base.plain_text import printed
 from ..loop.built_fmus import built
 from ..loop.places import PLANTS
 from ..loop.settings import Settings

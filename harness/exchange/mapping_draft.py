@@ -10,10 +10,11 @@ from typing import NamedTuple
 
 from fmpy.model_description import ModelVariable
 
-from ...fmus.unit_conversion import converts
-from ..base.known_names import words_of
-from ..cosimulation.interface import Interface, unit_of
-from ..cosimulation.system import Port, System
+from fmuloop.interface import Interface, unit_of
+from fmuloop.system import Port, System
+from toolground.known_names import words_of
+from toolground.unit_conversion import converts
+
 from ..loop.places import CONNECTIONS, INPUTS, OPTIONAL, OUTPUTS, PARAMETERS
 
 WORDS = {

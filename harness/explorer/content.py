@@ -9,13 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from driverecords.drive import Drive
+from fmuloop.wiring import Fit, fit
+from toolground.atomic_files import complete
+from toolground.errors import UserError
+from toolground.written_numbers import REAL
+
 from ...fmus.building.one_car import DEFAULT_CAR, with_estimates
-from ...fmus.written_numbers import REAL
-from ..base.atomic_files import complete
-from ..base.errors import DrivelineError
-from ..base.parameter_words import FORMS, WORDS
-from ..cosimulation.wiring import Fit, fit
 from ..loop.built_fmus import frequency_of_plant
+from ..loop.parameter_words import FORMS, WORDS
 from ..loop.places import PARAMETERS, PLACES, STEP_SIZE, T_S
 from ..loop.settings import Settings, loop
 from ..manoeuvres.catalogue import MANOEUVRES
@@ -23,7 +25,6 @@ from ..manoeuvres.drivable import require_road
 from ..manoeuvres.for_car import share_of
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.road_load import Track
-from ..recordings.drive import Drive
 from ..studies.drives.replay import car_of, followed
 from ..views.annotations import shown_at_first
 from ..views.metrics_table import SHOWN
@@ -78,13 +79,13 @@ def content(
         T_max: largest torque of the motor in N.m; inf: that of the default car.
 
     Raises:
-        DrivelineError: there is no module of the loops, a manoeuvre has the name of the recording, or the plant cannot
+        UserError: there is no module of the loops, a manoeuvre has the name of the recording, or the plant cannot
             follow it.
     """
     if recording is not None and recording.name in manoeuvres:
-        raise DrivelineError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
+        raise UserError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
     if mapped := next((each for each in given.values() if each.mapping), None):
-        raise DrivelineError(f"--map {'='.join(next(iter(mapped.mapping.items())))}: a page has the names of the loop")
+        raise UserError(f"--map {'='.join(next(iter(mapped.mapping.items())))}: a page has the names of the loop")
     fits = {key: fit(loop(settings)) for key, settings in given.items()}
     car = with_estimates(of_car or _built_for(fits.values()))
     plants, controllers = (list(dict.fromkeys(key[k] for key in given)) for k in (0, 1))
@@ -192,7 +193,7 @@ def _shown(manoeuvre: Manoeuvre, plants: list[str], fits: list[Fit]) -> dict[str
 def _has_road(manoeuvre: Manoeuvre, fitted: Fit) -> bool:
     try:
         require_road(manoeuvre, fitted)
-    except DrivelineError:
+    except UserError:
         return False
     return True
 

@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from ..cosimulation.interface import unit_of
-from ..cosimulation.wiring import Fit
+from fmuloop.interface import unit_of
+from fmuloop.wiring import Fit
+
 from ..design.character import factors
 
 CAR = ("phi_B", "C", "m", "J_1", "J_2", "c_slip", "tau", "d_max")

@@ -14,17 +14,18 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
+from fmublocks.native.compiler import FLAGS, WHOLE, CompilerError, compile_in, run_compiler, zig_compiler
+from fmublocks.native.packaging import build_native
+from fmuloop.compiled_steps import SOURCE as STEPS
+from fmuloop.interface import Interface, type_of, unit_of
+from fmuloop.wiring import Fit, fit
+from toolground.atomic_files import complete
+from toolground.collected_warnings import warn_once
+from toolground.errors import UserError
+from toolground.user_cache import is_as_made, kept, named_as_cache, user_cache
+
 from ...fmus.catalogue import EVERY
-from ...fmus.native.compiler import FLAGS, WHOLE, CompilerError, compile_in, run_compiler, zig_compiler
-from ...fmus.native.packaging import build_native
 from ...fmus.origin import sources_digest
-from ..base.atomic_files import complete
-from ..base.collected_warnings import warn_once
-from ..base.errors import DrivelineError
-from ..base.user_cache import is_as_made, kept, named_as_cache, user_cache
-from ..cosimulation.compiled_steps import SOURCE as STEPS
-from ..cosimulation.interface import Interface, type_of, unit_of
-from ..cosimulation.wiring import Fit, fit
 from ..loop.places import NATIVE, PLACES
 from ..loop.settings import Settings
 from ..loop.settings import loop as system_of
@@ -78,7 +79,7 @@ def loops_of(fits: Mapping[str, Fit], are_ours: bool) -> dict[str, Any]:
     """What `packed` gives of loops, by their names; those of blocks of the project alone are in the standard module.
 
     Raises:
-        DrivelineError: there is no Zig and no module, or an FMU has no C source of FMI 2.0.
+        UserError: there is no Zig and no module, or an FMU has no C source of FMI 2.0.
     """
     if are_ours:
         return standard()
@@ -90,7 +91,7 @@ def standard() -> dict[str, Any]:
     """What `packed` gives of all loops of the project: made with the package, else by Zig and then kept.
 
     Raises:
-        DrivelineError: it is not there, and there is no Zig.
+        UserError: it is not there, and there is no Zig.
     """
     return _packaged() or _kept(_standard_digest(), _standard)
 
@@ -99,7 +100,7 @@ def require_possible() -> None:
     """Looks whether there are the loops of the project, or Zig, before anything is built.
 
     Raises:
-        DrivelineError: neither is there.
+        UserError: neither is there.
     """
     if not (_packaged() or is_as_made(_place(_standard_digest()))):
         _zig()
@@ -120,7 +121,7 @@ def write_standard(path: Path = PACKAGED) -> None:
     """Makes the module of all loops of the project, for a package.
 
     Raises:
-        DrivelineError: there is no Zig.
+        UserError: there is no Zig.
     """
     made = _standard()
     made.content["made_of"] = _standard_digest()
@@ -179,7 +180,7 @@ def build(fits: Mapping[str, Fit], columns: Sequence[str] = COLUMNS) -> Module:
 
     Raises:
         CompilerError: Zig refuses a source.
-        DrivelineError: there is no Zig, or an FMU has no C source of FMI 2.0.
+        UserError: there is no Zig, or an FMU has no C source of FMI 2.0.
     """
     fmus = {each.identifier: each for fitted in fits.values() for each in fitted.interfaces.values()}
     sources = {name: sources_of(interface) for name, interface in fmus.items()}
@@ -204,14 +205,14 @@ def sources_of(interface: Interface) -> dict[str, bytes]:
     """The C files of an FMU by name.
 
     Raises:
-        DrivelineError: it has none of FMI 2.0.
+        UserError: it has none of FMI 2.0.
     """
     with zipfile.ZipFile(interface.path) as archive:
         found = {
             name.removeprefix(SOURCES): archive.read(name) for name in archive.namelist() if name.startswith(SOURCES)
         }
     if WHOLE not in found or interface.fmi != 2:
-        raise DrivelineError(
+        raise UserError(
             f"{interface.path}: a page has loops of FMUs that were built from Python by `driveline build`, "
             "whose C source is in them (build/native has those); "
             "`driveline compare --report` and `simulate` run every FMU"
@@ -227,7 +228,7 @@ def _zig() -> list[str]:
     try:
         return [*zig_compiler()]
     except CompilerError as reason:
-        raise DrivelineError(
+        raise UserError(
             "there is no Zig that makes the loops of a page: pip install ziglang; or install driveline-damping from a "
             "wheel"
         ) from reason

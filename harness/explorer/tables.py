@@ -4,14 +4,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from ctypes import addressof, c_char, c_double, c_int, sizeof
 from typing import Any, NamedTuple
 
-from ..cosimulation.bound_calls import wired
-from ..cosimulation.calls import Call
-from ..cosimulation.compiled_steps import TYPES
-from ..cosimulation.input_lines import Line
-from ..cosimulation.interface import Interface
-from ..cosimulation.row_layout import Layout
-from ..cosimulation.system import Scheme
-from ..cosimulation.wiring import Fit
+from fmuloop.bound_calls import wired
+from fmuloop.calls import Call
+from fmuloop.compiled_steps import TYPES
+from fmuloop.input_lines import Line
+from fmuloop.interface import Interface
+from fmuloop.row_layout import Layout
+from fmuloop.system import Scheme
+from fmuloop.wiring import Fit
 
 ROWS = 1025
 """Of the table in the module, which a long run fills again and again."""

@@ -5,10 +5,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from driverecords.source import RecordingError
+from driverecords.thresholds import Threshold
+
 from ...fmus.building.car_entries import vehicle_text
 from ...fmus.building.one_car import updated
-from ..recordings.source import RecordingError
-from ..recordings.thresholds import Threshold
 from .drive_train import DELAYS, Parameters
 from .estimator import Z_95
 from .free_runs import SIMULATED

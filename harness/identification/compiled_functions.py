@@ -12,8 +12,8 @@ from tempfile import TemporaryDirectory
 
 import casadi as ca
 
-from ...fmus.child_process import run
-from ..base.user_cache import kept, user_cache
+from toolground.child_process import run
+from toolground.user_cache import kept, user_cache
 
 FLAGS = ("-shared", "-fPIC", "-O1", "-ffp-contract=off")
 """Each operation rounds on its own, as in CasADi."""

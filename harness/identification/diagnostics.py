@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.signal import welch
 
-from ..recordings.thresholds import Threshold
+from driverecords.thresholds import Threshold
+
 from .drive_train import Parameters, State
 from .estimator import Z_95, Found
 from .model_inputs import LATEST

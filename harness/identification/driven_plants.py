@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from fmuloop.runs import kept_loaded
+
 from ...fmus.building.one_car import updated
-from ..cosimulation.runs import kept_loaded
 from ..loop.places import PLANTS
 from ..loop.settings import Settings
 from .car_file import WIDEST_INTERVAL, of_car

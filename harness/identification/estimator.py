@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from scipy.stats import norm
 
-from ..recordings.thresholds import Threshold
+from driverecords.thresholds import Threshold
+
 from .drive_train import Parameters
 from .prediction import CHANNELS, Noise, Predicted, Predictor
 from .priors import LEAST, PRIORS, before, moved, scales, surprise

@@ -7,8 +7,9 @@ import numpy as np
 from scipy.signal import csd, welch
 from scipy.stats import chi2
 
+from driverecords.measurement import Measurement
+
 from ..metrics.spectrum import decibels
-from ..recordings.measurement import Measurement
 from ..views.colours import BLACK, BLUE, GREY, VERMILION
 from ..views.figure_options import PLAIN, FigureOptions
 from ..views.figure_style import plot

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..recordings.measurement import Measurement
+from driverecords.measurement import Measurement
+
 from ..views.page.figures import figure
 from ..views.page.report import Heading, Row, Section, Table, write_report
 from ..views.panels import Axis, within

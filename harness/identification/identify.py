@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..recordings.measurement import Measurement
-from ..recordings.source import RecordingError
-from ..recordings.thresholds import Threshold
+from driverecords.measurement import Measurement
+from driverecords.source import RecordingError
+from driverecords.thresholds import Threshold
+
 from .diagnostics import (
     diagnose_excitation,
     diagnose_model,

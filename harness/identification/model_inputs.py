@@ -7,8 +7,9 @@ from functools import cached_property
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
-from ..recordings.measurement import PIECE, Measurement
-from ..recordings.source import RecordingError
+from driverecords.measurement import PIECE, Measurement
+from driverecords.source import RecordingError
+
 from .drive_train import STEPS
 from .torque_loop import FittedLoop, fitted
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.signal.windows import hann
 
-from ..recordings.thresholds import Threshold
+from driverecords.thresholds import Threshold
 
 WINDOWS = (12, 40)
 """Samples of a window."""

@@ -4,13 +4,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from ..base.argument_kinds import require_each, require_kind
-from ..base.errors import DrivelineError
+from driverecords.measurement import Measurement
+from fmuloop.argument_kinds import require_each, require_kind
+from toolground.errors import UserError
+
 from ..design.design_weights import records
 from ..loop.built_fmus import built_together
 from ..loop.places import NATIVE, PLANTS
 from ..loop.settings import Settings
-from ..recordings.measurement import Measurement
 from .drive_train import Parameters, Vehicle
 from .driven_plants import diagnose_driven, driven_plants
 from .identify import Identified, Log
@@ -52,7 +53,7 @@ def identify(
         # the other build would take minutes
         settings = built_together(Settings(plant, build=NATIVE) for plant in PLANTS)[0]
         found = replace(found, plant_fit=driven_plants(found, vehicle or {}, settings))
-    except DrivelineError as reason:
+    except UserError as reason:
         failed = reason
     return replace(found, warnings=(*found.warnings, *diagnose_driven(found, failed)))
 

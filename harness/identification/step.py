@@ -17,19 +17,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
+from driverecords.measurement import Measurement
+from driverecords.source import RecordingError
+from driverecords.thresholds import Threshold
+from driverecords.time_base import interval_of
+from fmuloop.errors import SimulationError
+from fmuloop.experiment import Experiment
+from fmuloop.runs import kept_loaded, run
+from fmuloop.system import Port, System
+
 from ...fmus.building.one_car import DAMPERS, DEFAULT_CAR, FOLLOW, of_one_car, with_estimates
 from ...fmus.catalogue import EVERY
 from ...fmus.errors import ParameterFileError
-from ..base.errors import SimulationError
-from ..cosimulation.experiment import Experiment
-from ..cosimulation.runs import kept_loaded, run
-from ..cosimulation.system import Port, System
 from ..loop.places import PLANTS
 from ..loop.settings import Settings, loop
-from ..recordings.measurement import Measurement
-from ..recordings.source import RecordingError
-from ..recordings.thresholds import Threshold
-from ..recordings.time_base import interval_of
 from .estimator import Z_95
 from .noise import white_noise
 
@@ -255,7 +256,11 @@ def _plant(settings: Settings) -> System:
         Port(f"plant.{name}", unit) for name, unit in (("T_mot", "N.m"), ("T_brake", "N.m"), ("slope", "rad"))
     )
     return System(
-        {"plant": whole.instances["plant"]}, inputs=inputs, outputs=(Port("plant.omega_1", "rad/s"),), own=whole.own
+        {"plant": whole.instances["plant"]},
+        inputs=inputs,
+        outputs=(Port("plant.omega_1", "rad/s"),),
+        own=whole.own,
+        lane_libraries=whole.lane_libraries,
     )
 
 

@@ -16,8 +16,9 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.optimize import least_squares
 
-from ..recordings.source import RecordingError
-from ..recordings.thresholds import Threshold
+from driverecords.source import RecordingError
+from driverecords.thresholds import Threshold
+
 from .noise import white_noise
 
 SQRT_2 = 2.0**0.5

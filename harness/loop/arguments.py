@@ -6,10 +6,10 @@ from numbers import Integral, Real
 from os import PathLike
 from typing import Any
 
-from ..base.errors import WiringError
-from ..base.plain_text import plain
-from ..cosimulation.limits import Limits
-from ..cosimulation.system import Scheme
+from fmuloop.errors import WiringError
+from fmuloop.limits import Limits
+from fmuloop.system import Scheme
+from toolground.plain_text import plain
 
 
 def _block(value: Any) -> bool:
@@ -27,6 +27,10 @@ def _texts(value: Any, of: type) -> bool:
         isinstance(value, Mapping) and all(isinstance(k, str) and isinstance(v, of) for k, v in value.items())
     )
 
+
+A_MANOEUVRE = "a Manoeuvre, such as MANOEUVRES['tipin15']"
+BLOCKS = "names of blocks or paths of FMUs"
+"""What several functions take."""
 
 BLOCK = (_block, "the name of a block, or the path of an FMU")
 

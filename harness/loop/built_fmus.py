@@ -5,18 +5,20 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Unpack
 
-from ...fmus.errors import BuildError, NotPossible
-from ...fmus.origin import is_stale, located, origin_of
-from ..base.collected_warnings import warn_once
-from ..base.errors import DrivelineError
-from ..cosimulation.system import System
-from ..cosimulation.wiring import fit
+from fmublocks.errors import BuildError, NotPossible
+from fmublocks.origin import located, origin_of
+from fmuloop.system import System
+from fmuloop.wiring import fit
+from toolground.collected_warnings import warn_once
+from toolground.errors import UserError
+
+from ...fmus.origin import is_stale
 from .mapped_names import require_known
 from .places import BUILD, BUILDS, COMPARATORS, NATIVE, PLACES, NameOrFile
 from .settings import Changes, Settings, chosen_build, loop, own_frequency, running, settings
 
 if TYPE_CHECKING:
-    from ...fmus.fmu import Fmu
+    from fmublocks.fmu import Fmu
 
 
 def built(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> Settings:
@@ -28,7 +30,7 @@ def built(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]
 
     Raises:
         WiringError: there is no such block.
-        DrivelineError: FMUs are missing, and says which command makes them; or cannot be built.
+        UserError: FMUs are missing, and says which command makes them; or cannot be built.
     """
     return built_together([settings(given, **changes)])[0]
 
@@ -59,7 +61,7 @@ def require_there(made: Settings) -> System:
     """The loop; warns of what is stale.
 
     Raises:
-        DrivelineError: an FMU of the project is not in the folder; says what makes it there.
+        UserError: an FMU of the project is not in the folder; says what makes it there.
         WiringError: the mapping names what is nothing in the loop.
     """
     require_known(made.mapping)
@@ -72,7 +74,7 @@ def require_there(made: Settings) -> System:
         what, it = (f"there is no FMU {missing[0]}", "it")
         if len(missing) == len(system.own) > 1:
             what, it = f"{missing[0].parent} has none of the FMUs {', '.join(path.stem for path in missing)}", "them"
-        raise DrivelineError(f"{what}; `driveline build{name}{only}{where}` makes {it}")
+        raise UserError(f"{what}; `driveline build{name}{only}{where}` makes {it}")
     warn_of_stale(system)
     return system
 
@@ -124,11 +126,11 @@ def _refreshed(loops: list[Settings], build_in: Place) -> list[Settings]:
         folder, new = build_in(_needed(loops))
     except NotPossible as reason:
         if all(made.build is not None for made in loops):
-            raise DrivelineError(str(reason)) from reason
+            raise UserError(str(reason)) from reason
         warn_once(f"no native FMUs: {reason}")
         return _refreshed([made.replace(build=made.build or BUILDS[0]) for made in loops], build_in)
     except BuildError as reason:
-        raise DrivelineError(str(reason)) from reason
+        raise UserError(str(reason)) from reason
     _say(new)
     return [made.replace(folder=folder) for made in loops]
 
@@ -173,7 +175,7 @@ def made_if_missing(fmu: "Fmu", folder: Path, build: str) -> Path:
     """An FMU that is no part of the loop: that of the folder, or where it is missing or stale one in the user's cache.
 
     Raises:
-        DrivelineError: it cannot be built here.
+        UserError: it cannot be built here.
     """
     from .fmu_cache import refreshed_copy
 
@@ -182,7 +184,7 @@ def made_if_missing(fmu: "Fmu", folder: Path, build: str) -> Path:
     try:
         kept, new = refreshed_copy([fmu], folder, build)
     except BuildError as reason:
-        raise DrivelineError(str(reason)) from reason
+        raise UserError(str(reason)) from reason
     _say(new)
     return located(fmu.name, kept, build)
 
@@ -201,6 +203,6 @@ def build_missing(given: Settings | NameOrFile | None = None, **changes: Unpack[
 
     Raises:
         WiringError: there is no such block.
-        DrivelineError: FMUs are missing, and says which command makes them; or cannot be built.
+        UserError: FMUs are missing, and says which command makes them; or cannot be built.
     """
     return _checked([settings(given, **changes)], _in_place)[0].build or NATIVE

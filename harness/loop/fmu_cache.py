@@ -9,13 +9,15 @@ from pathlib import Path
 from shutil import copyfile
 from typing import TYPE_CHECKING
 
-from ...fmus.origin import is_stale, located, origin_of, sources_digest
-from ..base.atomic_files import alone, complete
-from ..base.user_cache import forget, is_as_made, named_as_cache, seal, user_cache
+from fmublocks.origin import located, origin_of
+from toolground.atomic_files import alone, complete
+from toolground.user_cache import forget, is_as_made, named_as_cache, seal, user_cache
+
+from ...fmus.origin import is_stale, sources_digest
 from .places import BUILD, BUILDS
 
 if TYPE_CHECKING:
-    from ...fmus.fmu import Fmu
+    from fmublocks.fmu import Fmu
 
 
 def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Path, list[Path]]:
@@ -33,7 +35,7 @@ def refreshed_copy(fmus: "Sequence[Fmu]", folder: Path, build: str) -> tuple[Pat
     Raises:
         NotPossible: there is something to build, and it is not possible here.
         BuildError: start values that one was built with are refused by what it is now.
-        DrivelineError: the cache cannot be written.
+        UserError: the cache cannot be written.
     """
     from ...fmus.building.builds import rebuilt  # only where something may be made
 

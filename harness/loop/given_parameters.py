@@ -4,20 +4,22 @@ import dataclasses
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
-from ...fmus.unit_conversion import factor
-from ..base.collected_warnings import warn_once
-from ..base.errors import DrivelineError, WiringError
-from ..base.parameter_words import said
-from ..cosimulation.interface import Interface, unit_of
-from ..cosimulation.parameter_changes import parted
-from ..cosimulation.system import System
-from ..cosimulation.wiring import find, fit, out_of_bounds, require
+from fmuloop.errors import WiringError
+from fmuloop.interface import Interface, unit_of
+from fmuloop.parameter_changes import parted
+from fmuloop.system import System
+from fmuloop.wiring import find, fit, out_of_bounds, require
+from toolground.collected_warnings import warn_once
+from toolground.errors import UserError
+from toolground.unit_conversion import factor
+
 from .built_fmus import built_together
+from .parameter_words import said
 from .places import PLANTS, ROAD_LOAD
 from .settings import Settings, loop, own_frequency
 
 
-class NotTaken(DrivelineError):
+class NotTaken(UserError):
     """A file of parameters names some that a controller does not have."""
 
 

@@ -7,13 +7,14 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...fmus.lanes_here import lanes_here
+from fmuloop.system import System
+from toolground.lanes_here import lanes_here
+from toolground.user_cache import kept, user_cache
+
 from ...fmus.origin import is_stale, sources_digest
-from ..base.user_cache import kept, user_cache
-from ..cosimulation.system import System
 
 if TYPE_CHECKING:
-    from ...fmus.fmu import Fmu
+    from fmublocks.fmu import Fmu
 
 LOG = logging.getLogger(__name__)
 
@@ -59,6 +60,6 @@ def _library(name: str, sources: str) -> CDLL | None:
 
 
 def _make(name: str, lanes: int, path: Path) -> None:
-    from ...fmus.native.lanes import build_lanes
+    from fmublocks.native.lanes import build_lanes
 
     build_lanes(_blocks()[name], lanes, path)

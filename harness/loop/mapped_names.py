@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
-from ...fmus.names import meant
-from ..base.errors import WiringError
-from ..base.known_names import nearest
-from ..cosimulation.limits import Limits
+from fmuloop.errors import WiringError
+from fmuloop.limits import Limits
+from toolground.known_names import meant, nearest
+
 from .places import CONNECTIONS, INPUTS, OFFERED, OUTPUTS, PARAMETERS, PLACES, block_and_variable
 
 
@@ -37,7 +37,7 @@ def _entries(
     mapping: Mapping[str, str], place: str, blocks: Iterable[str], limits: Limits
 ) -> dict[str, dict[str, str]]:
     """For each block in a place its entries; one that none of several has is for all, to be refused."""
-    from ..cosimulation.interface import Interface  # who asks for help alone needs no fmpy
+    from fmuloop.interface import Interface  # who asks for help alone needs no fmpy
 
     entries = {name: theirs for name, theirs in mapping.items() if name.partition(".")[0] == place}
     foreign = [block for block in blocks if block not in PLACES[place]]
@@ -77,7 +77,8 @@ def require_known(mapping: Mapping[str, str]) -> None:
 @lru_cache
 def _known(place: str) -> frozenset[str]:
     """Names of the variables that the project's blocks for a place have."""
+    from fmublocks.description.variables import interface
+
     from ...fmus.catalogue import EVERY  # all equations, which a run without a mapping does not need
-    from ...fmus.description.variables import interface
 
     return frozenset(variable.name for name in PLACES[place] for variable in interface(EVERY[name].block))

@@ -7,10 +7,11 @@ from pathlib import Path
 from shutil import copyfile
 from tempfile import TemporaryDirectory
 
+from fmublocks.own_file import fmu_in
+from toolground.user_cache import kept, user_cache
+
 from ...fmus.building.builds import build_fmus
-from ...fmus.building.own_file import fmu_in
 from ...fmus.origin import sources_digest
-from ..base.user_cache import kept, user_cache
 
 
 def with_equations(controller: str) -> str:
@@ -19,7 +20,7 @@ def with_equations(controller: str) -> str:
 
     Raises:
         BuildError: the file declares no FMU, or it cannot be built.
-        DrivelineError: the cache cannot be written.
+        UserError: the cache cannot be written.
     """
     file = Path(controller)
     if file.suffix != ".py":

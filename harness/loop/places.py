@@ -3,10 +3,12 @@
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from fmuloop.system import Connection, Port
+from toolground.errors import UserError
+
 from ...fmus.names import COMPARATORS as COMPARATORS
 from ...fmus.names import PLACES as PLACES
 from ...fmus.names import T_S as T_S
-from ..cosimulation.system import Connection, Port
 
 _ROOT = Path(__file__).resolve().parents[2]
 
@@ -99,3 +101,18 @@ def block_and_variable(name: str, blocks: Iterable[str]) -> tuple[str, str]:
     fallback = name.partition(".")[0]
     block = max((each for each in blocks if name.startswith(f"{each}.")), key=len, default=fallback)
     return block, name[len(block) + 1 :]
+
+
+def by_name(blocks: Iterable[str], kind: str) -> dict[str, str]:
+    """Blocks (names or files), each once, by the names that tables and files give them; `kind` says what they are.
+
+    Raises:
+        UserError: two have the same name, or a controller that of the run without damping.
+    """
+    named: dict[str, str] = {}
+    for block in blocks:
+        if named.setdefault(Path(block).stem, block) != block:
+            raise UserError(f"two {kind}s are called {Path(block).stem}; rename the file of one")
+    if kind == "controller" and "off" in named:
+        raise UserError(f"the run without damping is called off, not a controller; rename the file {named['off']}")
+    return named

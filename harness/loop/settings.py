@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Mapping
+from ctypes import CDLL
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from math import pi, sqrt
@@ -9,10 +10,11 @@ from os import PathLike
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-from ..base.errors import WiringError
-from ..base.known_names import nearest
-from ..cosimulation.limits import USUAL_LIMITS, Limits
-from ..cosimulation.system import Scheme, System
+from fmuloop.errors import WiringError
+from fmuloop.limits import USUAL_LIMITS, Limits
+from fmuloop.system import Scheme, System
+from toolground.known_names import nearest
+
 from .arguments import ARGUMENTS, require_arguments
 from .places import (
     BUILD,
@@ -156,7 +158,7 @@ def own_frequency(car: Mapping[str, float]) -> float | None:
 
 
 def _read_mapping(path: Path) -> dict[str, str]:
-    from ..cosimulation.mapping import read  # who asks for help alone needs no fmpy
+    from fmuloop.mapping import read  # who asks for help alone needs no fmpy
 
     return read(path)
 
@@ -220,7 +222,7 @@ def running(made: Settings) -> Settings:
 @lru_cache(64)  # every run asks more than once
 def _has(path: Path, variable: str, limits: Limits, written: object) -> bool:
     """Whether an FMU that was `written` so has a variable."""
-    from ..cosimulation.description import read  # who asks for help alone needs no fmpy
+    from fmuloop.description import read  # who asks for help alone needs no fmpy
 
     return any(each.name == variable for each in read(path, limits).modelVariables)
 
@@ -254,7 +256,15 @@ def _system(
         offered=OFFERED,
         own=own,
         limits=limits,
+        lane_libraries=libraries_of,
     )
+
+
+def libraries_of(system: System) -> dict[str, CDLL] | None:
+    """What makes runs of a system in the lanes of the processor."""
+    from .lane_libraries import lane_libraries  # few runs are made so
+
+    return lane_libraries(system)
 
 
 def chosen_build(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes]) -> str:

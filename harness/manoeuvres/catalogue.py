@@ -4,7 +4,8 @@ from dataclasses import replace
 from math import atan
 from pathlib import Path
 
-from ..base.known_names import ByName
+from toolground.known_names import ByName
+
 from .demand_shape import plateau_ends
 from .manoeuvre import Manoeuvre
 from .prbs import binary_torque

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..cosimulation.experiment import instants, sampled
-from ..cosimulation.wiring import Fit, beyond_bounds
+from fmuloop.experiment import instants, sampled
+from fmuloop.wiring import Fit, beyond_bounds
+
 from ..loop.places import INPUTS, PARAMETERS, STEP_SIZE
 from ..loop.settings import Settings
 from .manoeuvre import Manoeuvre

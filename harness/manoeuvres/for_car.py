@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import inf, isinf
 
+from fmuloop.wiring import fit
+
 from ...fmus.names import T_MAX
-from ..cosimulation.wiring import fit
 from ..loop.settings import Settings, loop
 from .manoeuvre import Manoeuvre
 from .road_load import torque_limit

@@ -16,9 +16,10 @@ from math import atan, isfinite
 from pathlib import Path
 from typing import Any
 
-from ...fmus.toml_file import toml_entries
-from ..base.known_names import nearest
-from ..base.plain_text import plain
+from toolground.known_names import nearest
+from toolground.plain_text import plain
+from toolground.toml_file import toml_entries
+
 from ..loop.places import STEP_SIZE
 from .composed import composed
 from .manoeuvre import Manoeuvre
@@ -161,7 +162,7 @@ def _number(key: str, value: Any, unit: str) -> float:
 
 
 def _converted(key: str, text: str, unit: str) -> float:
-    from ...fmus.unit_conversion import quantity
+    from toolground.unit_conversion import quantity
 
     try:
         if unit == "rad" and text.endswith(" %"):
@@ -173,7 +174,7 @@ def _converted(key: str, text: str, unit: str) -> float:
 
 def _from_table(path: Path) -> Manoeuvre:
     """Of straight lines between the rows, two at one instant being a jump; it begins with the first row."""
-    from ..recordings.driver_and_road import read_course
+    from driverecords.driver_and_road import read_course
 
     course = read_course(path)
     try:

@@ -16,7 +16,8 @@ from itertools import pairwise
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from ..loop.places import T_S
 from .prbs import FEEDBACK, shift_register
 from .signals import Lines, Signal, lines, nanoseconds
@@ -36,7 +37,7 @@ ROUNDING = 1e-9
 """Part of a value by which the sum of straight lines may differ on both sides of an instant without being a jump."""
 
 
-class ManoeuvreError(DrivelineError):
+class ManoeuvreError(UserError):
     """A manoeuvre that cannot be driven; the message names what is wrong, its value, and what is allowed."""
 
 

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from ..base.errors import WiringError
-from ..cosimulation.interface import Interface
+from fmuloop.errors import WiringError
+from fmuloop.interface import Interface
+
 from ..loop.places import ROAD_LOAD
 
 if TYPE_CHECKING:
-    from ..recordings.drive import Drive
+    from driverecords.drive import Drive
 
 ROTATING_MASS = 1.09
 """Mass including the rotating parts, over the mass."""

@@ -15,7 +15,8 @@ its friction and its true inertia. Each is smoothed by a Gaussian of SMOOTHING, 
 
 import numpy as np
 
-from ..base.errors import WiringError
+from fmuloop.errors import WiringError
+
 from ..loop.places import STEP_SIZE
 from .manoeuvre import Manoeuvre
 from .road_load import RoadLoad, Track

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..base.progress import chunks
+from toolground.progress import chunks
+
 from .oscillation import SPAN
 from .spectrum import DRIVE_TRAIN, TO_50_HZ
 

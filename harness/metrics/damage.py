@@ -4,7 +4,8 @@ from types import ModuleType
 
 import numpy as np
 
-from ..base.optional_packages import required
+from toolground.optional_packages import required
+
 from .declaration import Absent
 
 EXPONENT = 5.0
@@ -17,7 +18,7 @@ def require_counting() -> ModuleType:
     Raises:
         MissingExtra: it is not installed.
     """
-    return required("rainflow", "counting load cycles", "replay")
+    return required("rainflow", "counting load cycles", "driveline-damping[replay]")
 
 
 def damage(T_gear: np.ndarray) -> float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from math import isfinite, nan
 from typing import Any, NamedTuple, get_type_hints
 
-from ..base.plain_text import printed
+from toolground.plain_text import printed
 
 
 class Absent(ValueError):

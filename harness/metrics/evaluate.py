@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ..base.argument_kinds import A_MANOEUVRE, require_kind
-from ..cosimulation.results import Ended
+from fmuloop.argument_kinds import require_kind
+from fmuloop.results import Ended
+
+from ..loop.arguments import A_MANOEUVRE
 from ..loop.places import T_S
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .declaration import Absent, measured

@@ -7,7 +7,8 @@ from html import escape
 from math import isnan
 from typing import TYPE_CHECKING, Any
 
-from ..base.errors import DrivelineError
+from toolground.errors import UserError
+
 from .declaration import Metric, declared
 
 if TYPE_CHECKING:
@@ -39,12 +40,12 @@ def frame(runs: Mapping[Any, Any]) -> DataFrame:
             levels, those with named fields one with these names.
 
     Raises:
-        DrivelineError: there are no runs.
+        UserError: there are no runs.
     """
     from pandas import DataFrame, Index  # only who asks for it waits for its import
 
     if not runs:
-        raise DrivelineError("there are no runs; a frame of metrics needs one or more")
+        raise UserError("there are no runs; a frame of metrics needs one or more")
     labels, records = list(runs), list(runs.values())
     every = declared(type(records[0]))
     index = Index(labels)

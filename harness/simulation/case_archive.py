@@ -16,11 +16,12 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from ..base.atomic_files import alone, naming, remove
-from ..base.csv_file import write_rows
-from ..base.errors import DrivelineError
-from ..cosimulation.system import System
-from ..cosimulation.wiring import fit
+from fmuloop.system import System
+from fmuloop.wiring import fit
+from toolground.atomic_files import alone, naming, remove
+from toolground.csv_file import write_rows
+from toolground.errors import UserError
+
 from .code_behind import digest_behind
 from .provenance import content, require_files, require_same_run, write_record
 
@@ -58,7 +59,7 @@ class CaseArchive(dict[Case, Answer]):
         table: what its lines are.
 
     Raises:
-        DrivelineError: the file is not such a table.
+        UserError: the file is not such a table.
     """
 
     def __init__(self, path: Path, table: Table[Case, Answer]) -> None:
@@ -90,14 +91,14 @@ class CaseArchive(dict[Case, Answer]):
         columns = [*self._table.columns]
         rows = _rows(whole)
         if next(rows, None) != columns:
-            raise DrivelineError(f"{self._path}: its first line must be {','.join(columns)}")
+            raise UserError(f"{self._path}: its first line must be {','.join(columns)}")
         for number, row in enumerate(rows, 2):
             try:
                 if len(row) != len(columns):
                     raise ValueError
                 yield self._table.parsed(row)
             except ValueError as error:
-                raise DrivelineError(f"{self._path}, line {number}: it must have {self._table.needed}") from error
+                raise UserError(f"{self._path}, line {number}: it must have {self._table.needed}") from error
 
 
 def _rows(text: str) -> Iterator[list[str]]:
@@ -147,7 +148,7 @@ def resumable(
         replace: whether results of another campaign may be replaced.
 
     Raises:
-        DrivelineError: there are results of another campaign, or a folder in the place of one; nothing has been run.
+        UserError: there are results of another campaign, or a folder in the place of one; nothing has been run.
     """
     code = digest_behind(table.parsed.__module__)
     run = {**run, "code": code, "versions": {name: version(name) for name in PACKAGES}}
@@ -155,7 +156,7 @@ def resumable(
     with alone(record.parent):
         try:
             require_same_run(record, run, [path, *results])
-        except DrivelineError:
+        except UserError:
             if not replace:
                 raise
             remove(path)

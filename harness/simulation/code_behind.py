@@ -5,19 +5,22 @@ The answers of a campaign belong to that code: one that goes on with another wou
 
 import ast
 from collections.abc import Iterator
-from importlib.util import find_spec, resolve_name
 from pathlib import Path
 
-from ...fmus.origin import KINDS, ROOT, code_digest
-from ...fmus.source_code import syntax_tree
+from fmublocks.origin import KINDS
+from toolground.digest import digest_of_files
+from toolground.imports import name_of, package_of, source_of, syntax_tree
+
+PACKAGES = ("driveline", "fmucheck", "fmuloop", "fmublocks", "driverecords", "toolground")
+"""Of the project."""
 
 
 def digest_behind(module: str) -> str:
-    """Digest of the code that a module of the project runs: of its own and of that which it imports, whatever comments,
-    docstrings and layout say; with the files of C and data beside them."""
+    """Digest of the code that a module of the project runs: of its own and of that which it imports, with the files of
+    C and data beside them."""
     paths = set(modules_behind(module).values())
     beside = {path for folder in {path.parent for path in paths} for path in folder.iterdir()}
-    return f"sha256:{code_digest(paths | {path for path in beside if path.suffix in KINDS[1:]})}"
+    return f"sha256:{digest_of_files(paths | {path for path in beside if path.suffix in KINDS[1:]})}"
 
 
 def modules_behind(module: str) -> dict[str, Path]:
@@ -26,22 +29,16 @@ def modules_behind(module: str) -> dict[str, Path]:
     waiting = [module]
     while waiting:
         name = waiting.pop()
-        spec = find_spec(name)
-        if name in found or spec is None or spec.origin is None:
-            continue
-        path = Path(spec.origin)
-        if path.suffix != ".py" or not path.is_relative_to(ROOT):
+        if name in found or name.partition(".")[0] not in PACKAGES or (path := source_of(name)) is None:
             continue
         found[name] = path
-        package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-        waiting += _imported(path, package)
+        waiting += _imported(path, package_of(name, path))
     return found
 
 
 def _imported(path: Path, package: str) -> Iterator[str]:
     for node in ast.walk(syntax_tree(path.read_bytes())):
-        if isinstance(node, ast.ImportFrom) and node.level:
-            name = resolve_name("." * node.level + (node.module or ""), package)
+        if isinstance(node, ast.ImportFrom):
+            name = name_of(node, package)
             yield name
-            if not node.module:
-                yield from (f"{name}.{alias.name}" for alias in node.names)
+            yield from (f"{name}.{alias.name}" for alias in node.names)

@@ -7,11 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..base.collected_warnings import warn_once
-from ..base.errors import WiringError
-from ..cosimulation.experiment import require_steps
-from ..cosimulation.interface import Interface
-from ..cosimulation.wiring import fit, out_of_bounds, require
+from driverecords.quantities import QUANTITIES, aliases
+from fmuloop.errors import WiringError
+from fmuloop.experiment import require_steps
+from fmuloop.interface import Interface
+from fmuloop.wiring import fit, out_of_bounds, require
+from toolground.collected_warnings import warn_once
+
 from ..loop.places import T_S
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -19,7 +21,6 @@ from ..manoeuvres.prbs import binary_torque
 from ..manoeuvres.road_load import RoadLoad, torque_limit
 from ..manoeuvres.speed_following import SIN_MAX
 from ..metrics.evaluate import at_samples
-from ..recordings.quantities import QUANTITIES, aliases
 from .simulate import start
 
 MEASURED_WHEELS = "plant.T_rim"

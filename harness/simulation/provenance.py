@@ -11,14 +11,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...fmus.child_process import output_of
-from ..base.atomic_files import alone, as_before_if_stopped, remove, replaceable, write_text
-from ..base.command_line import command_line
-from ..base.digest import digest
-from ..base.errors import DrivelineError
-from ..cosimulation import row_layout
-from ..cosimulation.system import System
-from ..cosimulation.wiring import Fit, fit
+from fmuloop import row_layout
+from fmuloop.system import System
+from fmuloop.wiring import Fit, fit
+from toolground.atomic_files import alone, as_before_if_stopped, remove, replaceable, write_text
+from toolground.child_process import output_of
+from toolground.command_line import command_line
+from toolground.digest import digest
+from toolground.errors import UserError
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -65,7 +65,7 @@ class Made:
             others: files that other processes will write, and records of parts of the results.
 
         Raises:
-            DrivelineError: another run has written its results in the meantime.
+            UserError: another run has written its results in the meantime.
         """
         if not self.begun:
             places = {folder for path in (self._record, *others) for folder in path.absolute().parents}
@@ -104,7 +104,7 @@ def recorded(
         replace: whether results of another run may be replaced.
 
     Raises:
-        DrivelineError: there are results of another run, or a folder in the place of one; nothing has been run.
+        UserError: there are results of another run, or a folder in the place of one; nothing has been run.
     """
 
     def require() -> None:
@@ -130,10 +130,10 @@ def require_files(paths: Sequence[Path]) -> None:
     """Refuses a folder in the place of a file that will be written.
 
     Raises:
-        DrivelineError: there is one.
+        UserError: there is one.
     """
     if folder := next((path for path in paths if path.is_dir()), None):
-        raise DrivelineError(f"{folder} is a folder; a file is needed")
+        raise UserError(f"{folder} is a folder; a file is needed")
 
 
 def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Path]) -> None:
@@ -145,7 +145,7 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
         results: files that it will write, as far as their names are known.
 
     Raises:
-        DrivelineError: there are results of another run, or of one that nothing tells of.
+        UserError: there are results of another run, or of one that nothing tells of.
     """
     there = next((path for path in results if path.is_file()), record if record.is_file() else None)
     if there is None:
@@ -159,17 +159,17 @@ def require_same_run(record: Path, run: Mapping[str, Any], results: Sequence[Pat
         if changed is None:
             return
         reason = f"is of another run ({changed})"
-    raise DrivelineError(f"{there} {reason}; give another folder as --output, or --replace to overwrite it")
+    raise UserError(f"{there} {reason}; give another folder as --output, or --replace to overwrite it")
 
 
 def require_same_text(text: str, path: Path) -> None:
     """Refuses to replace a file that has another text.
 
     Raises:
-        DrivelineError: the file at `path` has.
+        UserError: the file at `path` has.
     """
     if replaceable(path) and path.read_bytes() != text.encode():
-        raise DrivelineError(
+        raise UserError(
             f"{path} is there with another content; give another place as --output, or --replace to overwrite it"
         )
 

@@ -4,9 +4,10 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
-from ..base.digest import digest
-from ..base.errors import DrivelineError
-from ..cosimulation.system import System
+from fmuloop.system import System
+from toolground.digest import digest
+from toolground.errors import UserError
+
 from ..loop.settings import Settings
 
 
@@ -31,14 +32,14 @@ def require_same_fmus(expected: Mapping[Path, str]) -> None:
     """Refuses other FMUs than those with these digests.
 
     Raises:
-        DrivelineError: one is absent here or has another content.
+        UserError: one is absent here or has another content.
     """
     for path, its in expected.items():
         if not path.is_file():
-            raise DrivelineError(f"there is no FMU {path}; all that run cases need it at this path")
+            raise UserError(f"there is no FMU {path}; all that run cases need it at this path")
         status = path.stat()
         if _digest(path, status.st_mtime_ns, status.st_size) != its:
-            raise DrivelineError(f"{path} is not the one that the campaign was begun with")
+            raise UserError(f"{path} is not the one that the campaign was begun with")
 
 
 @cache

@@ -10,16 +10,18 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from ..base.argument_kinds import A_MANOEUVRE, require_kind
-from ..base.collected_warnings import warn_once
-from ..base.errors import RunEnded, SimulationError, WiringError
-from ..base.parameter_words import said
-from ..cosimulation.experiment import Experiment, Source, require_steps
-from ..cosimulation.results import Results
-from ..cosimulation.runs import run
-from ..cosimulation.system import Port, System
-from ..cosimulation.wiring import fit
+from fmuloop.argument_kinds import require_kind
+from fmuloop.errors import RunEnded, SimulationError, WiringError
+from fmuloop.experiment import Experiment, Source, require_steps
+from fmuloop.results import Results
+from fmuloop.runs import run
+from fmuloop.system import Port, System
+from fmuloop.wiring import fit
+from toolground.collected_warnings import warn_once
+
+from ..loop.arguments import A_MANOEUVRE
 from ..loop.built_fmus import frequency_of_plant, require_there
+from ..loop.parameter_words import said
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
 from ..loop.settings import Changes, Settings, own_frequency, running
 from ..loop.settings import settings as settings_of

@@ -14,7 +14,8 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
-from ..base.atomic_files import complete
+from toolground.atomic_files import complete
+
 from .figure_options import PLAIN, USUAL_KINDS, FigureOptions
 from .panels import MARKERS, Arrow, Axis, Band, Bars, Curve, Dashes, Drawing, Level, Panel, Part, Points, Spans, within
 

@@ -7,8 +7,9 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any, NamedTuple
 
-from ..base.atomic_files import write_text
-from ..base.csv_file import write_rows
+from toolground.atomic_files import write_text
+from toolground.csv_file import write_rows
+
 from ..metrics.declaration import Column, declared
 from ..metrics.run_metrics import Metrics, RideMetrics
 from .markdown import markdown_table

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from ..recordings.channels import Channel
-from ..recordings.drive import Drive
-from ..recordings.findings import Finding
+from driverecords.channels import Channel
+from driverecords.drive import Drive
+from driverecords.findings import Finding
+
 from .colours import BLUE, VERMILION
 from .figure_options import PLAIN, FigureOptions
 from .figure_style import plot

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from driverecords.file_units import FileUnit
+
 from ..metrics.declaration import Absent
 from ..metrics.oscillation import amplitude
 from ..metrics.spectrum import band_rms
-from ..recordings.file_units import FileUnit
 from .annotations import GAP, gap
 from .colours import BLACK, BLUE, GREY
 from .figure_options import PLAIN, FigureOptions

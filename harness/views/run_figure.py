@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from ..base.argument_kinds import require_each
-from ..base.errors import DrivelineError, WiringError
-from ..base.plain_text import printed
-from ..cosimulation.results import Results
+from fmuloop.argument_kinds import require_each
+from fmuloop.errors import WiringError
+from fmuloop.results import Results
+from toolground.errors import UserError
+from toolground.plain_text import printed
+
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .annotations import AFTER, BEFORE, GAP, gap, in_words, marks_of_step, metrics_of
 from .colours import BLACK, GREEN, GREY
@@ -72,7 +74,7 @@ def plot(
     Raises:
         WiringError: results or names are something else.
         UnknownName: there is no such signal.
-        DrivelineError: the file has another ending.
+        UserError: the file has another ending.
     """
     runs: dict[str, Any] = dict(results) if isinstance(results, Mapping) else {"": results}
     require_each("results", list(runs.values()), np.ndarray, "results of runs, as simulate gives them")
@@ -82,7 +84,7 @@ def plot(
     path = Path("run" if file is None else file)
     kind = path.suffix.lower().removeprefix(".")
     if file is not None and kind not in KINDS:
-        raise DrivelineError(f"file = {file}: it must end in .{', .'.join(KINDS)}")
+        raise UserError(f"file = {file}: it must end in .{', .'.join(KINDS)}")
     options = FigureOptions("", window, (kind,) if kind else ())
     one = next(iter(runs.values()))
     title = manoeuvre.description if manoeuvre else f"run of {one['time'][-1] - one['time'][0]:g} s"

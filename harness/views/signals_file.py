@@ -13,10 +13,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..base.atomic_files import complete
-from ..base.csv_file import write_csv
-from ..base.optional_packages import required
-from ..recordings.headings import split
+from driverecords.headings import split
+from toolground.atomic_files import complete
+from toolground.csv_file import write_csv
+from toolground.optional_packages import required
 
 if TYPE_CHECKING:
     import numpy as np
@@ -40,8 +40,8 @@ def _csv_with_units(results: np.ndarray, path: Path) -> None:
 
 def _parquet(results: np.ndarray, path: Path) -> None:
     """The unit of a column stands in its metadata as `unit`, and where pandas reads `DataFrame.attrs` from."""
-    arrow = required("pyarrow", "writing Parquet files", "recordings")
-    parquet = required("pyarrow.parquet", "writing Parquet files", "recordings")
+    arrow = required("pyarrow", "writing Parquet files", "driveline-damping[recordings]")
+    parquet = required("pyarrow.parquet", "writing Parquet files", "driveline-damping[recordings]")
     fields, attributes = [], {}
     for column, name, unit in _columns(results):
         kind = arrow.from_numpy_dtype(results.dtype[column])
@@ -76,7 +76,7 @@ def _pieces(results: np.ndarray) -> Iterator[np.ndarray]:
 
 def _mdf(results: np.ndarray, path: Path) -> None:
     """One group of channels, whose master is the first column, the time."""
-    asammdf = required("asammdf", "writing MDF files", "recordings")
+    asammdf = required("asammdf", "writing MDF files", "driveline-damping[recordings]")
     from importlib.metadata import version
 
     from asammdf.blocks.v4_blocks import FileHistory
@@ -110,7 +110,7 @@ def _signals(piece: np.ndarray, make: Callable[..., Any]) -> list[Any]:
 
 def _columns(results: np.ndarray) -> Iterator[tuple[str, str, str | None]]:
     """Each column, its name and its unit: that in the name itself, in brackets, or that of Results."""
-    from ..cosimulation.results import Results
+    from fmuloop.results import Results
 
     units = results.units if isinstance(results, Results) else {}
     for column in results.dtype.names or ():

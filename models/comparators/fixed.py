@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping
 from types import SimpleNamespace
 from typing import Any, TypeVar, cast
 
-from ..block.declaration import with_defaults, without
+from fmublocks.block.declaration import with_defaults, without
+
 from ..controller.interfaces import Estimator, Law, Part
 
 NOT_LEARNED = {"phi_B_0": 0.0, "L_phi_B": 0.0, "gap_bias": 0.0, "gap_torque": 1.0, "t_cross": 1.0}

@@ -8,8 +8,9 @@ motor stands for it. It fades from one to the other.
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
-from ..block.operators import clip, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import clip, where
+
 from ..controller.fading import faded
 from ..controller.interfaces import Motion
 

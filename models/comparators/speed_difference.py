@@ -8,7 +8,8 @@ speeds up, and an error of the wheel radius; omega_delta = 0 leaves it out.
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
+from fmublocks.block.declaration import Real
+
 from ..controller.damping_law import washed_out
 from ..controller.interfaces import Addition, Motion
 from ..controller.supervised_controller import supervised

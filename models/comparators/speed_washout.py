@@ -8,7 +8,8 @@ first order, s/(s + 2 zeta_v omega_v). Sampled by the trapezoidal rule, which is
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
+from fmublocks.block.declaration import Real
+
 from ..controller.interfaces import Addition, Motion
 from ..controller.supervised_controller import supervised
 from . import measured_speeds

@@ -7,7 +7,8 @@ with the motion T_pred ahead. Without a gap there is nothing to land in.
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
+from fmublocks.block.declaration import Real
+
 from ..controller.damping_law import washed_out
 from ..controller.interfaces import Addition, Motion
 

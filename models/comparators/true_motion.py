@@ -8,8 +8,9 @@ found together with the estimator.
 from dataclasses import replace
 from typing import Annotated, NamedTuple, cast
 
-from ..block.declaration import Real, merged
-from ..block.operators import branch, clip, is_finite, logical_and
+from fmublocks.block.declaration import Real, merged
+from fmublocks.block.operators import branch, clip, is_finite, logical_and
+
 from ..controller import T_S, damping_law, supervision_interface, torque_estimator
 from ..controller.damping_law import LawState
 from ..controller.motor_signals import in_range

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from ..block.declaration import Enumeration
-from ..block.operators import where
+from fmublocks.block.declaration import Enumeration
+from fmublocks.block.operators import where
 
 NONE, SPEED_RANGE, SPEED_JUMP, SPEED_FROZEN, TORQUE_IMPLAUSIBLE = range(1, 6)
 WHEEL_CONTRADICTS, WRONG_DIRECTION, WRONG_LAUNCH, FEEDS, FRAME_LATE = range(6, 11)

@@ -29,8 +29,9 @@ slip, and what it feeds must show.
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
-from ..block.operators import clip, logical_and, maximum, minimum, sqrt, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import clip, logical_and, maximum, minimum, sqrt, where
+
 from ..physics.vehicle import CAR, MotorInertia, Stiffness
 from .gains import GAINS
 from .interfaces import Addition, Motion

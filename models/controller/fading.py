@@ -1,6 +1,6 @@
 """How modes fade from one to the other."""
 
-from ..block.operators import maximum, minimum, where
+from fmublocks.block.operators import maximum, minimum, where
 
 
 def faded(level: float, on: bool, T_s: float, t_fade: float) -> float:

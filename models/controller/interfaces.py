@@ -7,7 +7,7 @@ in s. All quantities are referred to the motor side.
 
 from typing import Annotated, Any, NamedTuple, Protocol, TypeVar
 
-from ..block.declaration import Real
+from fmublocks.block.declaration import Real
 
 S = TypeVar("S")
 P = TypeVar("P", contravariant=True)

@@ -8,8 +8,9 @@ of that. On the flank of a tooth, thrown back by one, or rocking on ice the moto
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
-from ..block.operators import logical_and, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import logical_and, where
+
 from ..physics.vehicle import added_speed
 from .supervision_interface import Parameters
 

@@ -19,8 +19,9 @@ learned where the wheels slip.
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
-from ..block.operators import branch, clip, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import branch, clip, where
+
 from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, added_speed
 from .gains import GAINS
 

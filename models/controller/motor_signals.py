@@ -11,8 +11,9 @@ by T_frame with every frame. It is forgotten as two clocks part.
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, logical_or, maximum, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import logical_and, logical_not, logical_or, maximum, where
+
 from ..physics.vehicle import added_speed
 from . import torque_loop
 from .causes import FRAME_LATE, SPEED_FROZEN, SPEED_JUMP, SPEED_RANGE, TORQUE_IMPLAUSIBLE

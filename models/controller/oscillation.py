@@ -11,8 +11,9 @@ counted too, and the damping can do little against it: it only becomes less, and
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
-from ..block.operators import clip, logical_and, logical_not, logical_or, maximum, minimum, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import clip, logical_and, logical_not, logical_or, maximum, minimum, where
+
 from .supervision_interface import Parameters
 
 AHEAD = 1.0

@@ -3,7 +3,8 @@
 Sensor noise would otherwise rattle the motor of a standing car in its gap.
 """
 
-from ..block.operators import clip, logical_and, minimum, where
+from fmublocks.block.operators import clip, logical_and, minimum, where
+
 from .supervision_interface import Parameters
 
 

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from typing import Any, Generic
 
-from ..block.declaration import merged
-from ..block.operators import branch, clip, logical_and, logical_not, logical_or, maximum, where
-from ..block.types import SampledBlock
+from fmublocks.block.declaration import merged
+from fmublocks.block.operators import branch, clip, logical_and, logical_not, logical_or, maximum, where
+from fmublocks.block.types import SampledBlock
+
 from . import T_S, causes, launch, motor_signals, oscillation, standstill, torque_loop, trust, wheel_messages
 from .fading import faded
 from .interfaces import Estimator, Law

@@ -11,8 +11,9 @@ what the damping alone may take.
 
 from typing import Annotated, Generic, NamedTuple, TypeVar
 
-from ..block.declaration import Enumeration, Real
-from ..block.operators import clip, is_finite, where
+from fmublocks.block.declaration import Enumeration, Real
+from fmublocks.block.operators import clip, is_finite, where
+
 from . import causes
 from .launch import LaunchState
 from .motor_signals import MotorState

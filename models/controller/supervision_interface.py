@@ -2,7 +2,8 @@
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Boolean, Integer, Real
+from fmublocks.block.declaration import Boolean, Integer, Real
+
 from ..physics.vehicle import CAR, MotorInertia, MotorLag
 from .gains import GAINS
 

@@ -26,8 +26,9 @@ rounds them as little as the twist, which is the integral of their difference.
 from collections.abc import Sequence
 from typing import Annotated, NamedTuple, cast
 
-from ..block.declaration import Real, merged
-from ..block.operators import branch, clip, maximum, where
+from fmublocks.block.declaration import Real, merged
+from fmublocks.block.operators import branch, clip, maximum, where
+
 from ..physics.backlash import dead_zone
 from ..physics.vehicle import CAR, HalfGap, MotorInertia, Stiffness, WheelInertia, added_speed
 from . import learned_gap

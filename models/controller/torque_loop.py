@@ -8,7 +8,8 @@ the motor does not do what is demanded.
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
+from fmublocks.block.declaration import Real
+
 from .supervision_interface import Parameters
 
 SQRT_2 = 2.0**0.5

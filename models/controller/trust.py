@@ -13,8 +13,9 @@ from collections.abc import Mapping
 from functools import reduce
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, logical_or, maximum, minimum, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import logical_and, logical_not, logical_or, maximum, minimum, where
+
 from .causes import CLOCKS, NONE, first_of
 from .supervision_interface import Input, Parameters
 

@@ -7,8 +7,9 @@ not, is not taken, and changes nothing. The others correct the estimate, and are
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
-from ..block.operators import logical_and, logical_not, maximum, minimum, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import logical_and, logical_not, maximum, minimum, where
+
 from ..physics.vehicle import added_speed
 from .motor_signals import in_range
 from .supervision_interface import Input, Parameters

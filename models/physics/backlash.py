@@ -1,6 +1,6 @@
 """Backlash: the dead zone between the flanks of the teeth (paper, Fig. 4)."""
 
-from ..block.operators import clip
+from fmublocks.block.operators import clip
 
 
 def dead_zone(x: float, half_width: float) -> float:

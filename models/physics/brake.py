@@ -14,8 +14,8 @@ model for control of systems with friction", IEEE Trans. Automatic Control 40(3)
 
 from typing import Annotated, NamedTuple, Protocol
 
-from ..block.declaration import Real
-from ..block.operators import clip
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import clip
 
 BristleDeflection = Annotated[float, Real("rad", "twist of the brake bristles at sliding", 1e-4, 0.1)]
 BristleDamping = Annotated[float, Real("s", "damping time of the brake bristles", 1e-4, 0.1)]

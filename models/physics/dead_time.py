@@ -11,7 +11,7 @@ G. A. Baker, P. Graves-Morris, "Pade Approximants", 2nd ed., Cambridge 1996, sec
 
 from typing import NamedTuple
 
-from ..block.operators import maximum, where
+from fmublocks.block.operators import maximum, where
 
 LEAST = 1e-4
 """Dead time in s, below which there is none: it would only make the equations stiff."""

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from ..block.declaration import Real
+from fmublocks.block.declaration import Real
 
 
 class Input(NamedTuple):

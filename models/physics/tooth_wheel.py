@@ -8,9 +8,9 @@ over the time since the last edge. The sensor cannot tell the direction.
 
 from typing import Annotated, NamedTuple, Protocol
 
-from ..block.declaration import Real
-from ..block.noise import normals, uniform
-from ..block.operators import branch, floor, logical_or, minimum, where
+from fmublocks.block.declaration import Real
+from fmublocks.block.noise import normals, uniform
+from fmublocks.block.operators import branch, floor, logical_or, minimum, where
 
 TEETH = 48.0
 PITCH = 6.283185307179586 / TEETH

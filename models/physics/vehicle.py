@@ -2,8 +2,8 @@
 
 from typing import Annotated, NamedTuple, Protocol
 
-from ..block.declaration import Real
-from ..block.operators import sin, tanh
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import sin, tanh
 
 StartSpeed = Annotated[float, Real("m/s", "speed at the start, stationary rolling on level road", 0.0, 70.0, 10.0)]
 StartTorque = Annotated[float, Real("N.m", "stationary motor torque at a rolling start", -1000.0, 1000.0, 100.0)]

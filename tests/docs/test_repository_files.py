@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from driveline.fmus.release import DATE, VERSION
 from driveline.harness.commands.cli import parser
+from fmublocks.release import DATE, VERSION
 from tests import ROOT
 from tests.docs.pages import commands
 

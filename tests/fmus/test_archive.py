@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus import release
-from driveline.fmus.archive import write_archive
-from driveline.harness.base.atomic_files import write_text
 from driveline.harness.commands.cli import main
+from fmublocks import release
+from fmublocks.archive import write_archive
 from tests.together import together
+from toolground.atomic_files import write_text
 
 FILES = {"modelDescription.xml": b"<fmiModelDescription/>"}
 

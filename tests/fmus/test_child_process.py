@@ -11,8 +11,8 @@ from time import monotonic, sleep
 
 import pytest
 
-from driveline.fmus.child_process import output_of, run
 from tests.signals import heed_signals
+from toolground.child_process import output_of, run
 
 ROOT = Path(__file__).parents[2]
 
@@ -35,7 +35,7 @@ deviations.findings({})
 """
 
 COMPILE = """
-from driveline.fmus.native.compiler import host_binaries
+from fmublocks.native.compiler import host_binaries
 host_binaries("FMU", {"all.c": b""})
 """
 
@@ -91,7 +91,7 @@ def test_a_program_ends_with_a_process_that_is_killed(begun, code: str) -> None:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_build_that_is_stopped_leaves_no_process_and_no_file(begun, tmp_path: Path, number: signal.Signals) -> None:
-    stopped = f"from driveline.harness.base.interruption import script\ndef main():{COMPILE}\nscript(main)"
+    stopped = f"from toolground.interruption import script\ndef main():{COMPILE}\nscript(main)"
     process, programs = begun(
         stopped.replace("\nhost", "\n    host").replace("\nfrom driveline.fmus", "\n    from driveline.fmus")
     )

@@ -12,8 +12,8 @@ import pytest
 from fmpy.model_description import ModelDescription
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native.compiler import host_compiler
-from driveline.models.block.types import SampledBlock
+from fmublocks.block.types import SampledBlock
+from fmublocks.native.compiler import host_compiler
 from tests.fmus.legal_hosts import HOSTS, LASTS, LONG, LONG_IN_PYTHON, LONGER
 from tests.fmus.libpython import with_libpython
 from tests.fuzz.calls import as_fmi2

@@ -5,13 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus import origin
-from driveline.fmus.building import builds
-from driveline.fmus.building.builds import NotPossible, build_fmus, refreshed
+from driveline.fmus.building.builds import build_fmus, refreshed
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.errors import BuildError
-from driveline.fmus.origin import is_stale, origin_of
-from driveline.fmus.python.packaging import build
+from driveline.fmus.origin import is_stale
+from fmublocks import builds, origin
+from fmublocks.builds import NotPossible
+from fmublocks.errors import BuildError
+from fmublocks.origin import origin_of
+from fmublocks.python.packaging import build
 
 NAME = "WheelSpeedCan"
 

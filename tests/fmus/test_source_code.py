@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus import origin
 from driveline.fmus.source_code import code_of
+from fmublocks import origin
 from tests.together import together
 
 PYTHON = '''

@@ -11,12 +11,12 @@ from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.one_car import of_one_car
 from driveline.fmus.building.parameter_files import for_instances, read_files
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.errors import BuildError
-from driveline.fmus.python.packaging import build
 from driveline.harness.loop.places import NATIVE
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
-from driveline.models.block.declaration import variables
+from fmublocks.block.declaration import variables
+from fmublocks.errors import BuildError
+from fmublocks.python.packaging import build
 from tests import ROOT
 from tests.fmus.host import opened
 from tests.fmus.native.test_page import EXAMPLE

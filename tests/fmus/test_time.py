@@ -5,7 +5,7 @@ import sys
 from itertools import cycle, repeat
 
 from driveline.fmus.catalogue import FMUS
-from driveline.models.block.types import SampledBlock
+from fmublocks.block.types import SampledBlock
 from tests.fmus.host import opened
 from tests.together import together
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus.file_limits import DEEPEST_TOML, LARGEST_TOML, MOST_DIGITS
-from driveline.fmus.toml_file import toml_entries
 from tests.together import together
+from toolground.file_limits import DEEPEST_TOML, LARGEST_TOML, MOST_DIGITS
+from toolground.toml_file import toml_entries
 
 
 def read(folder: Path, text: str) -> dict:

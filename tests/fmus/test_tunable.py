@@ -9,8 +9,8 @@ import pytest
 from fmpy.fmi2 import FMU2Model
 
 from driveline.fmus.catalogue import EVERY, FMUS
-from driveline.fmus.description.variables import Variable, interface
-from driveline.models.block.runner import runner
+from fmublocks.block.runner import runner
+from fmublocks.description.variables import Variable, interface
 from tests.back_to_back import random_inputs
 from tests.fmus.host import opened
 from tests.fmus.test_values import outside

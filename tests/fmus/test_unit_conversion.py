@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from driveline.fmus.unit_conversion import LONGEST, SI, factor, known, quantity
+from toolground.unit_conversion import LONGEST, SI, factor, known, quantity
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.variables import LARGEST, interface
-from driveline.fmus.protocol import INPUT_TOLERANCE
+from fmublocks.description.variables import LARGEST, interface
+from fmublocks.protocol import INPUT_TOLERANCE
 from tests.fmus.host import opened
 from tests.together import together
 

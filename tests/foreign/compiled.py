@@ -8,7 +8,7 @@ from zipfile import ZipFile
 
 import fmpy
 
-from driveline.fmus.native.compiler import host_compiler
+from fmublocks.native.compiler import host_compiler
 from tests.skipping import skipped_if_impossible
 
 

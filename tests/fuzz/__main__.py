@@ -4,9 +4,9 @@ import argparse
 import json
 from pathlib import Path
 
-from driveline.harness.base.interruption import script
 from tests.fuzz import TARGETS
 from tests.fuzz.target import FAULT
+from toolground.interruption import script
 
 
 def main() -> int:

@@ -9,15 +9,15 @@ from random import Random
 from zipfile import ZipFile, ZipInfo
 
 from driveline.fmus.building.builds import build_fmus
-from driveline.harness.base.errors import DrivelineError
-from driveline.harness.cosimulation.wiring import fit
-from driveline.harness.exchange.compliance.check import check
 from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
+from fmucheck.check import check
+from fmuloop.wiring import fit
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
 from tests.fuzz.target import Attempt, Unclean, target
+from toolground.errors import UserError
 
 DESCRIPTION = "modelDescription.xml"
 ATTRIBUTE = re.compile(r' (\w+)="([^"]*)"')
@@ -88,7 +88,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
             if random.random() > RUNS:
                 return "fits"
             simulate(MANOEUVRES["tipin0"], plant=str(path), folder=folder, build=NATIVE)
-        except DrivelineError as refusal:
+        except UserError as refusal:
             lines = str(refusal).splitlines()
             if not all(line.isprintable() and len(line) <= LONGEST for line in lines):
                 raise Unclean(f"{lines}") from refusal

@@ -6,11 +6,11 @@ from random import Random
 from shutil import copyfile
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.lanes_here import lanes_here
-from driveline.fmus.native.lanes import build_lanes
-from driveline.harness.base.user_cache import kept
+from fmublocks.native.lanes import build_lanes
 from tests.fuzz.damage import spoiled_bytes
 from tests.fuzz.target import Attempt, Unclean, target
+from toolground.lanes_here import lanes_here
+from toolground.user_cache import kept
 
 
 @target(

@@ -8,10 +8,10 @@ from random import Random
 import fmpy
 from fmpy.model_description import ModelDescription
 
-from driveline.fmus.building.builds import FMIS, NotPossible, builders
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native.compiler import host_compiler
-from driveline.fmus.native.packaging import FMI_HEADERS
+from fmublocks.builds import FMIS, NotPossible, builders
+from fmublocks.native.compiler import host_compiler
+from fmublocks.native.packaging import FMI_HEADERS
 from tests.fuzz.target import Attempt, Unclean, target
 
 HOST = Path(__file__).parents[1] / "fmus" / "native" / "native_host.c"

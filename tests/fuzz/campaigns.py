@@ -7,11 +7,11 @@ from pathlib import Path
 from random import Random
 from unittest.mock import patch
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.simulation import case_archive, provenance
 from driveline.harness.simulation.case_archive import Table, resumable
 from tests.fuzz.damage import spoiled_text
 from tests.fuzz.target import Attempt, Unclean, target
+from toolground.errors import UserError
 
 TABLE: Table[int, float] = Table(
     ["case", "answer"], lambda case, answer: [case, answer], lambda row: (int(row[0]), float(row[1])), "two numbers"
@@ -60,7 +60,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
             path.write_bytes(path.read_bytes()[: -random.randrange(1, 6)])
         try:
             found = run(*second, len(CASES))
-        except DrivelineError as refusal:
+        except UserError as refusal:
             if not str(refusal).isprintable():
                 raise Unclean(f"{refusal}") from refusal
             return "refused in one line"

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 from driveline.models import two_mass_driveline as driveline
 from driveline.models import validation_vehicle
-from driveline.models.block.operators import tanh
 from driveline.models.physics import brake, vehicle
 from driveline.models.physics.backlash import dead_zone
+from fmublocks.block.operators import tanh
 
 
 class Energy(NamedTuple):

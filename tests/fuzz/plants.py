@@ -14,15 +14,15 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from driveline.fmus.fmu import Fmu
-from driveline.fmus.native.compiler import host_compiler
-from driveline.fmus.native.packaging import C_FILES
-from driveline.fmus.native.shared_header import shared_header
-from driveline.fmus.native.source import block_sources
-from driveline.fmus.native.tableau import rosenbrock_header, step_header
 from driveline.models import two_mass_driveline, validation_vehicle
-from driveline.models.block.declaration import Quantity, Real, variables
-from driveline.models.block.types import ContinuousBlock
+from fmublocks.block.declaration import Quantity, Real, variables
+from fmublocks.block.types import ContinuousBlock
+from fmublocks.fmu import Fmu
+from fmublocks.native.compiler import host_compiler
+from fmublocks.native.packaging import C_FILES
+from fmublocks.native.shared_header import shared_header
+from fmublocks.native.source import block_sources
+from fmublocks.native.tableau import rosenbrock_header, step_header
 from tests.fuzz.energy import ENERGIES
 from tests.fuzz.target import Attempt, Unclean, target
 

@@ -9,20 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from driveline.fmus.file_limits import PATIENCE
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
-from driveline.harness.recordings.bounded_reading import outcome
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.format_detection import is_text
-from driveline.harness.recordings.measurement import read_measurement
-from driveline.harness.recordings.source import RecordingError
+from driverecords.bounded_reading import outcome
+from driverecords.drive import read_drive
+from driverecords.format_detection import is_text
+from driverecords.measurement import read_measurement
+from driverecords.source import RecordingError
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
 from tests.fuzz.target import Attempt, Unclean, target
 from tests.harness.recordings.car import RADIUS, RATIO
 from tests.harness.recordings.car import drive as excited
 from tests.harness.recordings.variants import TEXTS, recording, write_arrow, write_mdf
+from toolground.errors import UserError
+from toolground.file_limits import PATIENCE
 
 SOUND = "Time [s],Velocity [km/h],Elevation [m],Motor Torque [Nm]\n" + "".join(
     f"{0.1 * k:.1f},{20.0 + 0.1 * k:.2f},{500.0 + 0.01 * k:.2f},{k % 7 * 5.0:.2f}\n" for k in range(30)
@@ -128,7 +128,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         path.write_bytes(content)
         try:
             signals = use(path, random)
-        except DrivelineError as refusal:
+        except UserError as refusal:
             if "\n" in str(refusal) or not str(refusal).isprintable():
                 raise Unclean(f"{content[:3000]!r}: {refusal}") from refusal
             return "refused in one line"

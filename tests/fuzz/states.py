@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from random import Random
 
-from driveline.fmus.building.builds import builders
 from driveline.fmus.catalogue import FMUS
+from fmublocks.builds import builders
 from tests.fuzz.calls import HOST, program
 from tests.fuzz.target import Attempt, Unclean, target
 

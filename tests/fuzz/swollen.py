@@ -16,18 +16,18 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from driveline.fmus.building.parameter_files import read_vehicle
-from driveline.fmus.errors import BuildError
-from driveline.fmus.file_limits import SECONDS
-from driveline.fmus.unit_conversion import SI, factor
-from driveline.harness.base.errors import DrivelineError
-from driveline.harness.cosimulation.system import System
-from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.manoeuvres.manoeuvre_file import read_manoeuvre
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.quantities import aliases
+from driverecords.drive import read_drive
+from driverecords.quantities import aliases
+from fmublocks.errors import BuildError
+from fmuloop.system import System
+from fmuloop.wiring import fit
 from tests.fuzz.target import Attempt, Unclean, target
 from tests.harness.recordings.test_bus_log import drive as frames
 from tests.harness.recordings.test_bus_log import write as write_log
+from toolground.errors import UserError
+from toolground.file_limits import SECONDS
+from toolground.unit_conversion import SI, factor
 
 MEMORY, BESIDE = 2_000_000_000, 2.0
 """Bytes that the process may have that reads a file, and seconds that it may compute beside reading."""
@@ -63,7 +63,7 @@ def in_fmu(random: Random, folder: Path) -> None:
     try:
         factor(unit(random), random.choice((SI, "N.m", unit(random))))
     except ValueError as reason:
-        raise DrivelineError(str(reason)) from reason
+        raise UserError(str(reason)) from reason
 
 
 def entry(random: Random) -> str:
@@ -211,7 +211,7 @@ def attempts(folder: Path) -> Iterator[Attempt]:
         try:
             kind(random, folder)
             answer = "read"
-        except (DrivelineError, BuildError) as refusal:
+        except (UserError, BuildError) as refusal:
             answer = "refused in one line"
             if not all(line.isprintable() for line in str(refusal).splitlines()[: None if kind is toml else 1]):
                 raise Unclean(f"{kind.__name__}: {refusal}") from refusal

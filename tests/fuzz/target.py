@@ -11,7 +11,7 @@ from random import Random
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from driveline.harness.base.progress import progress
+from toolground.progress import progress
 
 Attempt = Callable[[Random], str]
 """One try: draws its input, and says in a word or two how it was answered.

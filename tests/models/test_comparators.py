@@ -8,7 +8,6 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from driveline.models.block.declaration import without
 from driveline.models.comparators import (
     linear_observer,
     measured_speeds,
@@ -23,6 +22,7 @@ from driveline.models.controller import T_S, supervision, torque_estimator
 from driveline.models.controller.interfaces import Motion
 from driveline.models.controller.supervision import Input, State
 from driveline.models.physics.backlash import dead_zone
+from fmublocks.block.declaration import without
 from tests.models.controller.controllers import OURS, drive_inputs, run, shaken
 
 LITERAL = {"lambda_v": 0.0, "L_T_l": 0.0, "L_can_T_l": 0.0, **paper_observer.NO_SLIP, **NOT_LEARNED}

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from docs.studies import monolithic
 from driveline.models import damping_controller, two_mass_driveline, validation_vehicle
-from driveline.models.block.types import ContinuousBlock
 from driveline.models.controller import T_S
 from driveline.models.controller import torque_estimator as estimator
 from driveline.models.controller.supervision import FALLBACK, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input, State
 from driveline.models.physics.backlash import dead_zone
+from fmublocks.block.types import ContinuousBlock
 from tests.models.controller.controllers import (
     ABSURD,
     ROLLING,

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.models.block.runner import ContinuousRunner
 from driveline.models.manoeuvre import BLOCK, NEVER, POINTS, Input, State
+from fmublocks.block.runner import ContinuousRunner
 
 STEP_SIZE = 1e-3
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from driveline.models import motor_torque_loop as motor
-from driveline.models.block.integrator import Integrator
 from driveline.models.physics import dead_time
+from fmublocks.block.integrator import Integrator
 from tests.slow import slow
 
 P = motor.Parameters()

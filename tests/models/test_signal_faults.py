@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from driveline.models import signal_faults as faults
-from driveline.models.block.runner import SampledRunner
 from driveline.models.signal_faults import BLOCK, T_S, Input, Parameters, Signals
+from fmublocks.block.runner import SampledRunner
 
 BEGIN, END = 0.1, 0.2
 FIELD = {faults.MOTOR_SPEED: "omega_1_meas", faults.MOTOR_TORQUE: "T_mot_est", faults.WHEEL_SPEED: "omega_2_can"}

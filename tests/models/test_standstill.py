@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from driveline.models import two_mass_driveline, validation_vehicle
-from driveline.models.block.integrator import Integrator
+from fmublocks.block.integrator import Integrator
 from tests.slow import slow
 
 BOTH = [two_mass_driveline, validation_vehicle]

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from driveline.models import two_mass_driveline as driveline
-from driveline.models.block.integrator import Integrator
+from fmublocks.block.integrator import Integrator
 from tests.models.exact_driveline import ExactDriveline
 from tests.slow import slow
 

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from driveline.models import validation_vehicle as vehicle
-from driveline.models.block.integrator import Integrator
 from driveline.models.physics.backlash import dead_zone
+from fmublocks.block.integrator import Integrator
 
 P = vehicle.Parameters()
 REST = vehicle.State(*[0.0] * len(vehicle.State._fields))

@@ -32,8 +32,8 @@ IN_C = {
 
 LAST = {
     "models/": "tests/docs/studies/test_study.py",
-    "fmus/description/": "tests/fmus/native/test_fmi3.py",
-    "fmus/python/": "tests/fmus/native/test_same_words.py",
+    "packages/fmublocks/src/fmublocks/description/": "tests/fmus/native/test_fmi3.py",
+    "packages/fmublocks/src/fmublocks/python/": "tests/fmus/native/test_same_words.py",
 }
 """By folder: for models the sentinels of the studies, for descriptions what a validator says of one of FMI 3.0, and
 that FMUs that run Python say what native ones do."""

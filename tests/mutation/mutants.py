@@ -13,7 +13,7 @@ import faults_in_python
 
 ROOT = Path(__file__).resolve().parents[2]
 
-CODE = ("models/**/*.py", "fmus/**/*.py", "fmus/native/c/*.[ch]", "harness/**/*.py")
+CODE = ("models/**/*.py", "fmus/**/*.py", "packages/fmublocks/src/fmublocks/native/c/*.[ch]", "harness/**/*.py")
 """What is looked at; other C runs in no test that is compiled anew for each fault."""
 
 DRAWING = re.compile(r"harness/views/|figures?\.py$|/layout\.py$|/picture\.py$|_html\.py$")

@@ -13,7 +13,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from driveline.harness.base.errors import SimulationError
+from fmuloop.errors import SimulationError
 
 from .linear_prediction import value
 

@@ -5,13 +5,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from driveline.harness.base.errors import SimulationError
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.evaluate import WINDOW, WITHHELD, at_samples, evaluate
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.metrics.step_response import fitted, initial_value
 from driveline.models.controller import T_S
 from driveline.models.controller.supervision import Parameters, limited
+from fmuloop.errors import SimulationError
 
 from .contacts import GAP, PARTS, Contacts
 from .linear_prediction import Horizon

@@ -8,13 +8,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ...cosimulation.system import System
+from fmuloop.many_runs import many
+from fmuloop.system import System
+
 from ...loop.places import PLACES, PLANTS
 from ...loop.settings import Settings, loop
 from ...manoeuvres.for_car import for_car, given_torque
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
-from ...simulation.many_runs import many
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
 from ...simulation.simulate import simulate
 from ..design import design

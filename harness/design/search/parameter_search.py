@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...base.optional_packages import required
+from toolground.optional_packages import required
+
 from .controller_cost import Costs
 from .search_space import Space
 
@@ -121,7 +122,7 @@ class Search:
             "tolfun": TOLERANCE,
             "verbose": -10,
         }
-        return required("cma", "searching", "design").CMAEvolutionStrategy(begin, step, options)
+        return required("cma", "searching", "driveline-damping[design]").CMAEvolutionStrategy(begin, step, options)
 
 
 def best(visited: Sequence[Evaluated], character: float) -> Evaluated:

@@ -6,9 +6,10 @@ from math import exp, isclose, log
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ....fmus.building.own_file import fmu_of
-from ....fmus.description.variables import Variable, interface
-from ...base.errors import DrivelineError
+from fmublocks.description.variables import Variable, interface
+from toolground.errors import UserError
+
+from ....fmus.building.builds import fmu_of
 from ..design import design, literal_observer
 from ..design_weights import records
 
@@ -83,7 +84,7 @@ def space(controller: str, car: Mapping[str, Any]) -> Space:
         car: entries of the vehicle file.
 
     Raises:
-        DrivelineError: the controller has nothing to search.
+        UserError: the controller has nothing to search.
         DesignError: see `harness.design.design.design`.
     """
     declared = declared_parameters(controller)
@@ -98,7 +99,7 @@ def space(controller: str, car: Mapping[str, Any]) -> Space:
         if getattr(variable.declaration, "search", None)
     ]
     if not searched:
-        raise DrivelineError(
+        raise UserError(
             f"{Path(controller).stem} has no parameter that is searched: none is declared with a range, as "
             "Real(..., search=(0.5, 5.0))"
         )

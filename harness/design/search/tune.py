@@ -7,8 +7,9 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from ...base.optional_packages import required
-from ...base.progress import progress
+from toolground.optional_packages import required
+from toolground.progress import progress
+
 from ...loop.places import PLANTS
 from ...simulation.case_archive import Table, resumable
 from .controller_cost import LOST, POWER, TERMS, Costs
@@ -42,7 +43,7 @@ def tune(
         workers, executor: see `harness.simulation.many_runs.run_many`.
 
     Raises:
-        DrivelineError: there is another search in the folder; or one that cannot be read.
+        UserError: there is another search in the folder; or one that cannot be read.
         MissingExtra: the package cma is not installed.
     """
     known = table([each.name for each in space.searched])
@@ -67,7 +68,7 @@ def distinguishing(evaluation: CostEvaluation, space: Space, seed: int) -> dict[
         "reference": {name: rounded(value) for name, value in evaluation.reference().items()},
         "cost": f"sha256:{sha256(cost.encode()).hexdigest()}",
         "fmus": {path.stem: digest for path, digest in sorted(evaluation.digests().items())},
-        "cma": required("cma", "searching", "design").__version__,
+        "cma": required("cma", "searching", "driveline-damping[design]").__version__,
         "seed": seed,
     }
 

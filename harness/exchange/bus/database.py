@@ -6,13 +6,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from fmublocks.block.declaration import variables
+from fmublocks.block.frame import Content, Frame, layout
+from fmublocks.block.types import Block
+from fmuloop.errors import WiringError
+from toolground.atomic_files import complete
+from toolground.optional_packages import required
+
 from ....fmus.catalogue import FMUS
-from ....models.block.declaration import variables
-from ....models.block.frame import Content, Frame, layout
-from ....models.block.types import Block
-from ...base.atomic_files import complete
-from ...base.errors import WiringError
-from ...base.optional_packages import required
 from ...loop.places import CONNECTIONS, PLACES
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def messages(sent: Iterable[Telegram]) -> list[Message]:
     Raises:
         MissingExtra: cantools is not installed.
     """
-    required("cantools", "the database of the bus", "recordings")
+    required("cantools", "the database of the bus", "driveline-damping[recordings]")
     from cantools.database.can import Message
 
     made = []

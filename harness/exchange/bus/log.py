@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...base.atomic_files import complete
-from ...base.optional_packages import required
+from toolground.atomic_files import complete
+from toolground.optional_packages import required
+
 from .database import Telegram, messages
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def write_log(sent: Iterable[Telegram], results: np.ndarray, path: Path) -> None
     Raises:
         MissingExtra: python-can or cantools is not installed.
     """
-    can = required("can", "a log of the bus", "recordings")
+    can = required("can", "a log of the bus", "driveline-damping[recordings]")
     telegrams = list(sent)
     every = [
         frame

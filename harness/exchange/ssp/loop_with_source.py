@@ -5,9 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
-from ...base.errors import DrivelineError
-from ...cosimulation.system import Connection, System
-from ...cosimulation.wiring import Fit
+from fmuloop.system import Connection, System
+from fmuloop.wiring import Fit
+from toolground.errors import UserError
+
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.signals import FlatSine, Held, Lines, Signal, lines
 
@@ -41,7 +42,7 @@ def points(manoeuvre: Manoeuvre, fitted: Fit) -> dict[str, float]:
         fitted: the loop with that FMU, which tells how many points and bits it has.
 
     Raises:
-        DrivelineError: brake or slope is not made of straight lines, the demand neither of them nor a sine nor of two
+        UserError: brake or slope is not made of straight lines, the demand neither of them nor a sine nor of two
             values; or they have too many corners or bits.
     """
     known = fitted.interfaces[SOURCE].variables
@@ -49,18 +50,16 @@ def points(manoeuvre: Manoeuvre, fitted: Fit) -> dict[str, float]:
     signals = {"T_driver": demand, "T_brake": manoeuvre.T_brake, "slope": manoeuvre.slope}
     if curved := next((name for name, signal in signals.items() if not isinstance(signal, Lines)), None):
         also = ", a sine or a binary torque" if curved == "T_driver" else ""
-        raise DrivelineError(
+        raise UserError(
             f"{manoeuvre.name}: {curved} is not made of straight lines{also}, and other tools are given nothing else; "
             "take another manoeuvre, or a file with its points (docs/manoeuvres.md)"
         )
     corners = _corners(cast(Mapping[str, Lines], signals))
     most = sum(name.startswith("time_") for name in known)
     if len(corners) > most:
-        raise DrivelineError(
-            f"{manoeuvre.name}: its lines have {len(corners)} points; other tools are given at most {most}"
-        )
+        raise UserError(f"{manoeuvre.name}: its lines have {len(corners)} points; other tools are given at most {most}")
     if isinstance(manoeuvre.T_driver, Held) and any(name not in known for name in others):
-        raise DrivelineError(
+        raise UserError(
             f"{manoeuvre.name}: its binary torque has {len(manoeuvre.T_driver.values)} bits; other tools are given at "
             f"most {BITS * sum(name.startswith('bits_') for name in known)}"
         )

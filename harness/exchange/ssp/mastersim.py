@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
-from ...cosimulation.wiring import Fit
+from fmuloop.wiring import Fit
+
 from ...loop.places import STEP_SIZE
 from .variables import Value, their_name
 

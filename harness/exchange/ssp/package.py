@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import NamedTuple
 
-from ...base.collected_warnings import warn_once
-from ...base.errors import DrivelineError
-from ...cosimulation.wiring import Fit
+from fmuloop.wiring import Fit
+from toolground.collected_warnings import warn_once
+from toolground.errors import UserError
+
 from ...manoeuvres.manoeuvre import Manoeuvre
 from . import mastersim, variables
 from .structure import structure
@@ -37,13 +38,13 @@ def package(variants: Mapping[str, Variant], manoeuvre: Manoeuvre) -> dict[str, 
         variants: by their names, the default first.
 
     Raises:
-        DrivelineError: two FMUs have the same file name.
+        UserError: two FMUs have the same file name.
     """
     files: dict[str, bytes] = {}
     for number, (name, variant) in enumerate(variants.items()):
         for path, content in _files(name, variant, manoeuvre, DEFAULT if number == 0 else f"{name}.ssd").items():
             if files.setdefault(path, content) != content:
-                raise DrivelineError(f"two files are to be {path} in the archive; rename one of the FMUs")
+                raise UserError(f"two files are to be {path} in the archive; rename one of the FMUs")
     return files
 
 

@@ -12,9 +12,10 @@ from collections.abc import Mapping
 
 from fmpy.model_description import ModelVariable
 
-from ...cosimulation.interface import unit_of
-from ...cosimulation.system import Connection
-from ...cosimulation.wiring import Fit
+from fmuloop.interface import unit_of
+from fmuloop.system import Connection
+from fmuloop.wiring import Fit
+
 from ...loop.places import STEP_SIZE
 from . import layout
 from .variables import as_it_is, conversion, outputs, their_name, typed, units, version

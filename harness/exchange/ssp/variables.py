@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 from fmpy.model_description import BaseUnit, ModelVariable
 
-from ...cosimulation.interface import type_of, unit_of
-from ...cosimulation.system import Connection, System
-from ...cosimulation.wiring import Fit
+from fmuloop.interface import type_of, unit_of
+from fmuloop.system import Connection, System
+from fmuloop.wiring import Fit
+
 from .xml import Element, element
 
 NUMBERS = ("Real", "Integer")

@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....fmus.target.image import build_on_target
-from ....fmus.target.link import Answer, Link
-from ....fmus.target.sources import CONTROLLERS
-from ...cosimulation.system import System
+from fmublocks.target.image import build_on_target
+from fmublocks.target.link import Answer, Link
+from fmuloop.system import System
+
+from ....fmus.catalogue import CONTROLLERS
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import USUAL_MANOEUVRES
 from ...manoeuvres.for_car import for_car, largest_torque

@@ -6,15 +6,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from fmublocks.fmu import Fmu
+from fmublocks.native.statements import DOUBLE, SINGLE
+from fmublocks.target.image import a2l_description, host_program, target_image
+from fmublocks.target.link import Link, TargetError, emulated
+from fmublocks.target.sources import target_sources
+from fmuloop.errors import SimulationError
+from toolground.atomic_files import complete, write_text
+
 from ....fmus.building.one_car import of_one_car
 from ....fmus.building.parameter_files import read_files, require_taken
-from ....fmus.fmu import Fmu
-from ....fmus.native.statements import DOUBLE, SINGLE
-from ....fmus.target.image import a2l_description, host_program, target_image
-from ....fmus.target.link import Link, TargetError, emulated
-from ....fmus.target.sources import CONTROLLERS, target_sources
-from ...base.atomic_files import complete, write_text
-from ...base.errors import SimulationError
+from ....fmus.catalogue import CONTROLLERS
 
 
 def for_car(controller: str, vehicle: Path | None = None, parameters: Path | None = None) -> Fmu:

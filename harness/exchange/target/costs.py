@@ -8,9 +8,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from ....fmus.child_process import output_of, run
-from ....fmus.target.image import SCHEDULER, target_image
-from ....fmus.target.link import TargetError, emulated
+from fmublocks.target.image import SCHEDULER, target_image
+from fmublocks.target.link import TargetError, emulated
+from toolground.child_process import output_of, run
+
 from .controllers import Programs
 
 FLASH_SECTIONS = re.compile(r"^\.(?:text|rodata|data)\S*\s+(\d+)", re.MULTILINE)

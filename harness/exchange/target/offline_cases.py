@@ -7,15 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...cosimulation.interface import Interface
-from ...cosimulation.system import System
+from driverecords.drive import read_drive
+from fmuloop.interface import Interface
+from fmuloop.system import System
+
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import TOWN_DRIVE, USUAL_MANOEUVRES
 from ...manoeuvres.for_car import for_car
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
 from ...metrics.evaluate import at_samples
-from ...recordings.drive import read_drive
 from ...simulation.simulate import signals, simulate
 from ...studies.drives.replay import followed
 

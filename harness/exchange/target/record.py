@@ -7,13 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....fmus.native.statements import SINGLE
-from ....fmus.target.sources import CONTROLLERS, target_sources
-from ...base.atomic_files import write_text
-from ...base.csv_file import write_csv
-from ...base.progress import progress
-from ...cosimulation.parameter_changes import require_constant
-from ...cosimulation.wiring import fit
+from fmublocks.native.statements import SINGLE
+from fmublocks.target.sources import target_sources
+from fmuloop.parameter_changes import require_constant
+from fmuloop.wiring import fit
+from toolground.atomic_files import write_text
+from toolground.csv_file import write_csv
+from toolground.progress import progress
+
+from ....fmus.catalogue import CONTROLLERS
 from ...loop.places import T_S
 from ...loop.settings import Settings, loop
 from ...manoeuvres.catalogue import USUAL_MANOEUVRES

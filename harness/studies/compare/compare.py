@@ -10,9 +10,10 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ...base.errors import DrivelineError
-from ...base.known_names import by_name
-from ...cosimulation.results import Results
+from fmuloop.results import Results
+from toolground.errors import UserError
+
+from ...loop.places import by_name
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -93,12 +94,12 @@ def cases(plants: Sequence[str], manoeuvres: Sequence[str], controllers: Sequenc
     """All combinations, the run without damping and those with each controller next to each other.
 
     Raises:
-        DrivelineError: two plants or controllers have the same name, by which their files would be told apart; or there
+        UserError: two plants or controllers have the same name, by which their files would be told apart; or there
             is no controller.
     """
     by_name(plants, "plant")
     if not by_name(controllers, "controller"):
-        raise DrivelineError("there is no controller to compare; NoDamping is one too")
+        raise UserError("there is no controller to compare; NoDamping is one too")
     return [
         Case(plant, manoeuvre, controller)
         for plant in plants
@@ -139,7 +140,7 @@ def run_cases(
         format: of those files, one of `harness.views.signals_file.FORMATS`.
         options: of the figures, which are files.
     """
-    from ...simulation.many_runs import run_many  # one run does without
+    from fmuloop.many_runs import run_many  # one run does without
 
     run = partial(run_case, output=output / RUNS, loops=loops, manoeuvres=manoeuvres, format=format)
     outcomes = run_many(run, todo)

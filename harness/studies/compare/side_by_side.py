@@ -5,8 +5,11 @@ from functools import partial
 from os import PathLike
 from typing import Unpack
 
-from ...base.argument_kinds import BLOCKS, require_each
-from ...base.errors import DrivelineError
+from fmuloop.argument_kinds import require_each
+from fmuloop.many_runs import run_many
+from toolground.errors import UserError
+
+from ...loop.arguments import BLOCKS
 from ...loop.built_fmus import require_fitting
 from ...loop.mapped_names import mappings
 from ...loop.places import PLACES, PLANTS, NameOrFile
@@ -15,7 +18,6 @@ from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
-from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
 from .compare import Case, Loops, cases, loops_of
 
@@ -44,7 +46,7 @@ def compare(
         of the manoeuvre, the name or path of the controller or "without damping".
 
     Raises:
-        DrivelineError: two plants, manoeuvres or controllers have the same name, and what `simulate` raises.
+        UserError: two plants, manoeuvres or controllers have the same name, and what `simulate` raises.
         TypeError: there is no such field, or it is plant, controller or control.
     """
     if own := changes.keys() & {"plant", "controller", "control"}:
@@ -52,7 +54,7 @@ def compare(
     by_name: dict[str, Manoeuvre] = {}
     for manoeuvre in require_each("manoeuvres", manoeuvres, Manoeuvre, "manoeuvres, such as MANOEUVRES['tipin15']"):
         if by_name.setdefault(manoeuvre.name, manoeuvre) is not manoeuvre:
-            raise DrivelineError(f"two manoeuvres are called {manoeuvre.name}; rename one")
+            raise UserError(f"two manoeuvres are called {manoeuvre.name}; rename one")
     blocks = {"plants": plants, "controllers": controllers}
     each = [
         [str(block) for block in require_each(name, given, str | PathLike, BLOCKS)] for name, given in blocks.items()

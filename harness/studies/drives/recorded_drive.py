@@ -4,17 +4,18 @@ from collections.abc import Sequence
 from os import PathLike
 from typing import Unpack
 
-from ...base.argument_kinds import BLOCKS, require_each, require_kind
-from ...base.errors import DrivelineError
-from ...base.known_names import by_name
+from driverecords.drive import Drive
+from driverecords.plausibility import of_drive
+from fmuloop.argument_kinds import require_each, require_kind
+from toolground.errors import UserError
+
+from ...loop.arguments import BLOCKS
 from ...loop.built_fmus import require_fitting
 from ...loop.mapped_names import mappings
-from ...loop.places import PLACES, PLANTS, NameOrFile
+from ...loop.places import PLACES, PLANTS, NameOrFile, by_name
 from ...loop.settings import RunChanges, Settings
 from ...manoeuvres.road_load import Track
 from ...manoeuvres.speed_following import require_held
-from ...recordings.drive import Drive
-from ...recordings.plausibility import of_drive
 from .replay import Ride, car_of
 from .replay import replay as rides
 from .verdict import followed_speed, tell
@@ -50,7 +51,7 @@ def replay(
         The ride without damping, then one with each controller; signals in SI units, a row every 2 ms.
 
     Raises:
-        DrivelineError: there is no controller, or two have the same name; and what `simulate` raises.
+        UserError: there is no controller, or two have the same name; and what `simulate` raises.
         TypeError: a single controller is given.
         WiringError: `held` is less than a communication step, or the motor or plant lacks what the road load needs.
         MissingExtra: the extra `replay` is not installed.
@@ -61,7 +62,7 @@ def replay(
     controllers = require_each("controllers", controllers, str | PathLike, BLOCKS)
     require_held(held)
     if not controllers:
-        raise DrivelineError("there is no controller to drive with; NoDamping is one too")
+        raise UserError("there is no controller to drive with; NoDamping is one too")
     named = by_name(map(str, controllers), "controller")
     common = Settings(plant).replace(**changes)
     mapped = mappings(common.mapping, [str(plant)], list(named.values()), common.limits)

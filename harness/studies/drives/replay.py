@@ -9,10 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
 
-from ...base.errors import DrivelineError
-from ...base.progress import part, progress
-from ...cosimulation.results import Results
-from ...cosimulation.wiring import fit
+from driverecords.file_units import FileUnit
+from fmuloop.many_runs import run_many
+from fmuloop.results import Results
+from fmuloop.wiring import fit
+from toolground.errors import UserError
+from toolground.progress import part, progress
+
 from ...loop.settings import Settings, loop
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
@@ -21,8 +24,6 @@ from ...metrics.damage import damage, require_counting
 from ...metrics.declaration import given, measured
 from ...metrics.evaluate import at_samples, end_of, evaluate
 from ...metrics.run_metrics import RideMetrics
-from ...recordings.file_units import FileUnit
-from ...simulation.many_runs import run_many
 from ...simulation.simulate import SHORTEST, simulate
 from ...views.figure_options import PLAIN, FigureOptions
 from ...views.metrics_table import values, write_metrics, write_rides
@@ -131,12 +132,12 @@ def replay(track: Track, load: RoadLoad, controllers: Mapping[str, Settings], he
         held: see `harness.manoeuvres.speed_following.drive`.
 
     Raises:
-        DrivelineError: the recording is shorter than a swing is looked for in.
+        UserError: the recording is shorter than a swing is looked for in.
         MissingExtra: the package that counts load cycles is not installed.
     """
     require_counting()
     if track.t[-1] < SHORTEST:
-        raise DrivelineError(f"{track.name}: the recording lasts {track.t[-1]:g} s; at least {SHORTEST:g} s are needed")
+        raise UserError(f"{track.name}: the recording lasts {track.t[-1]:g} s; at least {SHORTEST:g} s are needed")
     first = next(iter(controllers.values()))
     with progress(MOST_DRIVES + len(controllers), track.name) as done:
         with part(done, 0.0, MOST_DRIVES):

@@ -4,10 +4,11 @@ import logging
 from collections.abc import Sequence
 from os import PathLike
 
-from ...recordings.drive import Drive
-from ...recordings.findings import Finding
-from ...recordings.plausibility import not_followed
-from ...recordings.source import RecordingError
+from driverecords.drive import Drive
+from driverecords.findings import Finding
+from driverecords.plausibility import not_followed
+from driverecords.source import RecordingError
+
 from .replay import Ride
 
 LOG = logging.getLogger(__name__)

@@ -8,10 +8,11 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
-from ...base.collected_warnings import warn_once
-from ...base.errors import RunEnded
+from fmuloop.errors import RunEnded
+from fmuloop.many_runs import run_many
+from toolground.collected_warnings import warn_once
+
 from ...simulation.case_archive import Table
-from ...simulation.many_runs import run_many
 from .evidence import Evidence
 from .fault_cases import PLANS, Case, Plan, case
 from .fault_catalogue import NOTHING

@@ -9,13 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.recfunctions import append_fields, repack_fields
 
-from ...base.errors import RunEnded
-from ...base.known_names import by_name
-from ...cosimulation.experiment import Experiment
-from ...cosimulation.runs import run
-from ...cosimulation.system import Connection, Port, System
-from ...cosimulation.wiring import Fit, fit
+from fmuloop.errors import RunEnded
+from fmuloop.experiment import Experiment
+from fmuloop.runs import run
+from fmuloop.system import Connection, Port, System
+from fmuloop.wiring import Fit, fit
+
 from ...loop.built_fmus import warn_of_stale
+from ...loop.places import by_name
 from ...loop.settings import Settings, loop, running
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -96,7 +97,7 @@ class FaultRunner:
             settings: of the loop with each plant.
 
         Raises:
-            DrivelineError: two plants have the same name, by which the cases are distinguished.
+            UserError: two plants have the same name, by which the cases are distinguished.
         """
         by_name(settings, "plant")
         self.plants = tuple(settings)
@@ -110,7 +111,7 @@ class FaultRunner:
         """The three runs of a case.
 
         Raises:
-            DrivelineError: an FMU is not the one that it is where the campaign was begun.
+            UserError: an FMU is not the one that it is where the campaign was begun.
             RunEnded: an FMU ended a run before its time.
             SimulationError: an FMU cannot be loaded, or refused a call.
         """

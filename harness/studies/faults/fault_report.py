@@ -7,8 +7,9 @@ from textwrap import fill
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from ...base.csv_file import write_csv
-from ...base.plain_text import printed
+from toolground.csv_file import write_csv
+from toolground.plain_text import printed
+
 from ...views.terminal import print_table
 from .fault_campaign import Outcome, count, coverage, judged, plan_of
 from .fault_cases import PLANS, Plan, case

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from matplotlib.colors import to_hex
 
-from ...base.plain_text import printed
+from toolground.plain_text import printed
+
 from ...views.colours import COLOURS
 from ...views.page.figures import Figure, figure
 from ...views.page.report import Heading, Row, Section, Table, write_report

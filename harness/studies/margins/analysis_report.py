@@ -5,7 +5,8 @@ from math import isfinite
 from pathlib import Path
 from textwrap import fill
 
-from ...base.csv_file import write_rows
+from toolground.csv_file import write_rows
+
 from ...metrics.declaration import declared
 from ...views.figure_style import draw
 from ...views.metrics_table import number

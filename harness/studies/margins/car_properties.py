@@ -8,11 +8,12 @@ from typing import Any, NamedTuple
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
+from toolground.plain_text import printed
+
 from ....fmus.building.car_entries import Entry, car
 from ....fmus.building.estimates import DECIDE, SHEET
 from ....fmus.building.one_car import MEASURED
 from ....models.damping_controller import BLOCK
-from ...base.plain_text import printed
 from ...design.loop_parameters import loop_parameters
 from ...design.unknowns import COSTS, Unknown
 from ...loop.places import PLANTS

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....fmus.native.arithmetic import COMPUTED
-from ....fmus.symbol import Symbol
-from ...base.errors import DrivelineError
+from fmublocks.native.arithmetic import COMPUTED
+from fmublocks.symbol import Symbol
+from toolground.errors import UserError
 
 STEP = 1e-4
 """By which every quantity is moved to either side, in its unit; small beside all that is not a rounding error."""
@@ -17,7 +17,7 @@ KINK = 1e-5
 """Jump of the rate, over the rate or 1, from which on a function has a kink there."""
 
 
-class NotLinear(DrivelineError):
+class NotLinear(UserError):
     """A function has a kink where its rates of change are asked for; the text names the quantities."""
 
 

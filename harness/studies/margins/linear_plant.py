@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....models.block.types import ContinuousBlock
+from fmublocks.block.types import ContinuousBlock
+
 from .jacobians import like, numbers, rates, reached
 from .operating_point import CAN, MOTOR, Point
 

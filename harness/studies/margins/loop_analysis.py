@@ -6,16 +6,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ....fmus.building.own_file import fmu_of
-from ...base.errors import DrivelineError
-from ...cosimulation.parameter_changes import require_constant
+from fmuloop.many_runs import run_many
+from fmuloop.parameter_changes import require_constant
+from toolground.errors import UserError
+
+from ....fmus.building.builds import fmu_of
 from ...loop.settings import Settings
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...manoeuvres.for_car import for_car, largest_torque
 from ...metrics.estimate import EstimateMetrics, estimate_metrics
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
-from ...simulation.many_runs import run_many
 from ...simulation.simulate import simulate
 from . import sensitivity
 from .describing_function import LimitCycle, Swing, limit_cycles, swings
@@ -136,7 +137,7 @@ def linear_part(part: Part, controller: str, parameters: Mapping[str, Mapping[st
 
     Raises:
         NotLinear: the controller is not linear in contact.
-        DrivelineError: the loop is not stable in contact.
+        UserError: the loop is not stable in contact.
     """
     point = point_of(part.plant, controller, parameters[part.plant])
     if part.what == "backlash":
@@ -147,9 +148,7 @@ def linear_part(part: Part, controller: str, parameters: Mapping[str, Mapping[st
     speed = float(part.what)
     loop = linear_loop(replace(point, v=speed / 3.6))
     if not is_stable(loop):
-        raise DrivelineError(
-            f"the loop with {controller} is not stable in contact at {speed:g} km/h: it has no margins"
-        )
+        raise UserError(f"the loop with {controller} is not stable in contact at {speed:g} km/h: it has no margins")
     return At(part.plant, speed, loop, drive_train_mode(loop, alone(point).frequency), margins(loop))
 
 
@@ -168,7 +167,7 @@ def analyse(settings: Mapping[str, Settings]) -> Analysis:
         settings: by the names of plants of the project, with one of its controllers.
 
     Raises:
-        NotLinear, DrivelineError: see `linear_part`.
+        NotLinear, UserError: see `linear_part`.
     """
     plants, controller = list(settings), str(next(iter(settings.values())).controller)
     parameters = {plant: settings[plant].parameters for plant in plants}

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from fmublocks.block.types import ContinuousBlock, SampledBlock
+
 from ....models import damping_controller, motor_torque_loop, two_mass_driveline, wheel_speed_can
-from ....models.block.types import ContinuousBlock, SampledBlock
 
 MOTOR, CAN = motor_torque_loop.BLOCK, wheel_speed_can.BLOCK
 

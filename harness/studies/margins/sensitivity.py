@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fmublocks.block.declaration import Real, variables
+
 from ....fmus.building.parameter_files import OF_A_RUN
-from ....models.block.declaration import Real, variables
 from ...design.loop_parameters import loop_records
 from ...metrics.declaration import declared
 from ...metrics.run_metrics import Metrics

@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Unpack
 
-from ...base.argument_kinds import require_each
+from fmuloop.argument_kinds import require_each
+
 from ...design.loop_parameters import loop_parameters
 from ...loop.own_controller import with_equations
 from ...loop.places import PLACES, PLANTS
@@ -33,7 +34,7 @@ def analyse(
         changes: fields of the settings that are to be others, as of `simulate`, for all runs.
 
     Raises:
-        DrivelineError: the controller is not linear in contact, or the loop with it is not stable.
+        UserError: the controller is not linear in contact, or the loop with it is not stable.
         BuildError: a Python file declares no FMU, or it cannot be built.
         TypeError: a single plant is given.
     """

@@ -7,11 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.collected_warnings import warn_once
-from ...base.errors import RunEnded, SimulationError, UnpackingError
-from ...base.plain_text import plain
-from ...cosimulation.results import Results
-from ...cosimulation.wiring import fit
+from fmuloop.errors import RunEnded, SimulationError, UnpackingError
+from fmuloop.results import Results
+from fmuloop.wiring import fit
+from toolground.collected_warnings import warn_once
+from toolground.plain_text import plain
+
 from ...design.uncertainty_box import changed
 from ...loop.settings import Settings, loop
 from ...manoeuvres.catalogue import MANOEUVRES
@@ -63,7 +64,7 @@ class CaseRunner:
             control: whether the damping control is enabled.
 
         Raises:
-            DrivelineError: an FMU is not the one that it is where the campaign was begun.
+            UserError: an FMU is not the one that it is where the campaign was begun.
             SimulationError: see `driveline.simulate`.
         """
         one, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)

@@ -7,9 +7,10 @@ from hashlib import sha256
 from math import nan
 from typing import Any
 
+from fmuloop.many_runs import run_many
+
 from ...design.uncertainty_box import BOX, DOUBLINGS, LOSS
 from ...simulation.case_archive import Table
-from ...simulation.many_runs import run_many
 from .case_runs import CaseRunner
 from .outcome import METRICS, ROBUSTNESS_MANOEUVRES, Case, Outcome
 

@@ -7,9 +7,10 @@ from pathlib import Path
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
-from ...base.csv_file import write_csv, write_rows
-from ...base.errors import SimulationError
-from ...base.plain_text import printed
+from fmuloop.errors import SimulationError
+from toolground.csv_file import write_csv, write_rows
+from toolground.plain_text import printed
+
 from ...design.uncertainty_box import Deviation
 from ...views.metrics_table import write_metrics
 from ...views.terminal import print_table

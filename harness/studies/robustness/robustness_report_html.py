@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ...base.errors import SimulationError
+from fmuloop.errors import SimulationError
+
 from ...views.page.compared_runs import Compared, run_sections
 from ...views.page.figures import Figure
 from ...views.page.report import Heading, Row, Section, Table, write_report

@@ -6,8 +6,9 @@ from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ...base.atomic_files import complete
-from ...base.errors import DrivelineError
+from toolground.atomic_files import complete
+from toolground.errors import UserError
+
 from ...metrics.declaration import Column, Metric
 from .document import HERE, document
 from .figures import Arrays, Figure, figure_data
@@ -27,10 +28,10 @@ def require_report(path: Path | None) -> None:
     """Refuses a report that cannot be written, before anything is run.
 
     Raises:
-        DrivelineError: it is no .html.
+        UserError: it is no .html.
     """
     if path is not None and path.suffix.lower() not in (".html", ".htm"):
-        raise DrivelineError(f"--report {path}: a report is a .html file")
+        raise UserError(f"--report {path}: a report is a .html file")
 
 
 def write_report(

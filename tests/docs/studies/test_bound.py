@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from docs.studies.bound import Bounded, bounded
-from driveline.harness.base.errors import SimulationError
 from driveline.harness.loop.settings import Settings
+from fmuloop.errors import SimulationError
 
 
 @pytest.fixture(scope="module")

@@ -18,11 +18,11 @@ from docs.studies.coupling_error import (
 )
 from docs.studies.dead_time import dead_times, lateness
 from docs.studies.step_dependence import Case, deviations, deviations_of
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.places import T_S
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
+from fmuloop.system import Scheme
 from tests.foreign import tampered
 
 IN_CONTACT = COUPLING_MANOEUVRES[0]

@@ -7,7 +7,7 @@ import pytest
 
 from docs.studies.foreign_loop import PARTS, STEP, Car, Loop, drawn, driven, logged
 from driveline.harness.identification.prior_knowledge import identify
-from driveline.harness.recordings.measurement import read_measurement
+from driverecords.measurement import read_measurement
 
 CAR = Car(J_2=0.42, C=96.0, phi_B=0.11, tau=0.0036)
 LOOPS = [

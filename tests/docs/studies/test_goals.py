@@ -14,7 +14,7 @@ from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import Settings
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation import many_runs
+from fmuloop import many_runs
 
 STEP = Goal("tipin15", "response_delay", (18, 27), over_none=True)
 SLOW = Goal("tipin15", "overshoot", (22, 20), SLOW_MOTOR)

@@ -13,8 +13,8 @@ from docs.studies import data_file, results
 from docs.studies.__main__ import build_all, check, make, sentinel_differences
 from docs.studies.pictures import FIGURES, SHOWN
 from docs.studies.study import STUDIES, Column, Measured, Table, differences, study
-from driveline.fmus.errors import BuildError
 from driveline.harness.views.panels import DASHED, Axis, Band, Curve, Drawing, Level, Panel
+from fmublocks.errors import BuildError
 from tests import ROOT
 from tests.docs.pages import PAGES, text_of
 from tests.skipping import skipped_if_impossible

@@ -20,8 +20,8 @@ from driveline.fmus.building.car_entries import (
 from driveline.fmus.building.one_car import FOLLOW, MEASURED, of_one_car
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
-from driveline.fmus.toml_file import toml_entries
 from tests.together import together
+from toolground.toml_file import toml_entries
 
 
 def test_each_entry_says_where_it_is_from_and_who_takes_it() -> None:

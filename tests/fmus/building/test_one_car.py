@@ -26,7 +26,7 @@ from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
 from driveline.harness.studies.margins.linear_plant import linear_plant
 from driveline.harness.studies.margins.operating_point import Point
-from driveline.models.block.types import ContinuousBlock
+from fmublocks.block.types import ContinuousBlock
 from tests.together import together
 
 EXAMPLES = sorted((ROOT / "examples" / "cars").glob("*.toml"))

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus.building.operator_meant import operator_meant
-from driveline.fmus.native.arithmetic import Node, Recording, TracedSymbol
+from fmublocks.native.arithmetic import Node, Recording, TracedSymbol
+from fmublocks.operator_meant import operator_meant
 
 
 @pytest.mark.parametrize(

@@ -18,9 +18,9 @@ from driveline.fmus.building.parameter_files import (
 )
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.errors import ParameterFileError
-from driveline.fmus.fmu import Fmu
 from driveline.fmus.names import COMPARATORS, RENAMED
-from driveline.models.block.declaration import Integer, Real, variables
+from fmublocks.block.declaration import Integer, Real, variables
+from fmublocks.fmu import Fmu
 from tests import ROOT
 from tests.together import together
 

@@ -14,18 +14,18 @@ from fmpy.validation import validate_fmu
 from matplotlib.axes import Axes
 
 from driveline.fmus.catalogue import EVERY, FMUS
-from driveline.fmus.description.build_kind import BuildKind
-from driveline.fmus.description.dependencies import Dependent, initial_dependencies, output_dependencies
-from driveline.fmus.description.documentation import WIDTH, page, picture, tables, timing
-from driveline.fmus.description.model_description import model_description
-from driveline.fmus.description.units import base_exponents
-from driveline.fmus.description.variables import interface
-from driveline.fmus.errors import BuildError
-from driveline.fmus.fmu import Fmu
-from driveline.fmus.release import DATE, VERSION, date
-from driveline.models.block.declaration import Boolean, Real
-from driveline.models.block.operators import where
-from driveline.models.block.types import ContinuousBlock
+from fmublocks.block.declaration import Boolean, Real
+from fmublocks.block.operators import where
+from fmublocks.block.types import ContinuousBlock
+from fmublocks.description.build_kind import BuildKind
+from fmublocks.description.dependencies import Dependent, initial_dependencies, output_dependencies
+from fmublocks.description.documentation import WIDTH, page, picture, tables, timing
+from fmublocks.description.model_description import model_description
+from fmublocks.description.units import base_exponents
+from fmublocks.description.variables import interface
+from fmublocks.errors import BuildError
+from fmublocks.fmu import Fmu
+from fmublocks.release import DATE, VERSION, date
 from tests.together import together
 
 every_fmu = together("name", FMUS)

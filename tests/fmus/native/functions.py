@@ -3,10 +3,10 @@
 import ctypes
 import subprocess
 
-from driveline.fmus.native.compiler import host_compiler
-from driveline.fmus.native.packaging import C_FILES
-from driveline.fmus.native.source import block_sources
-from driveline.fmus.native.trace import trace
+from fmublocks.native.compiler import host_compiler
+from fmublocks.native.packaging import C_FILES
+from fmublocks.native.source import block_sources
+from fmublocks.native.trace import trace
 
 EXPORTED = """
 __attribute__((visibility("default"))) void *address_of_{name}(void);

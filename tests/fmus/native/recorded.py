@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from driveline.fmus.native.arithmetic import COMPUTED, Node, Recording, TracedGraph, TracedSymbol, node_of
-from driveline.fmus.native.trace import Traced, leaves
+from fmublocks.native.arithmetic import COMPUTED, Node, Recording, TracedGraph, TracedSymbol, node_of
+from fmublocks.native.trace import Traced, leaves
 
 
 def recorded(of: Callable[..., Any], *vectors: Sequence[str]) -> TracedGraph:

@@ -7,8 +7,8 @@ import fmpy
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native.compiler import host_compiler
 from driveline.harness.loop.places import NATIVE
+from fmublocks.native.compiler import host_compiler
 from tests.fmus.host import opened
 from tests.together import together
 

@@ -8,7 +8,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 
 from driveline.fmus.catalogue import FMUS
-from driveline.models.block.declaration import with_defaults
+from fmublocks.block.declaration import with_defaults
 from tests.fmus.forged import forged, sealed
 from tests.fmus.host import opened
 from tests.fmus.native.test_places import CO_SIMULATION, arguments_of, call

@@ -5,9 +5,7 @@ from typing import Any
 
 import pytest
 
-from driveline.fmus.native.arithmetic import Node, Recording, TracedSymbol, node_of
-from driveline.fmus.native.rates import rates
-from driveline.models.block.operators import (
+from fmublocks.block.operators import (
     atan,
     branch,
     clip,
@@ -23,6 +21,8 @@ from driveline.models.block.operators import (
     tanh,
     where,
 )
+from fmublocks.native.arithmetic import Node, Recording, TracedSymbol, node_of
+from fmublocks.native.rates import rates
 from tests.fmus.native.recorded import values
 from tests.together import together
 

@@ -12,12 +12,12 @@ from fmpy.fmi3 import fmi3LogMessageCallback
 from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
 
-from driveline.fmus.building.builds import NotPossible, builders
 from driveline.fmus.catalogue import EVERY, FMUS
-from driveline.fmus.description.units import base_exponents
-from driveline.fmus.description.variables import interface
 from driveline.fmus.names import COMPARATORS
-from driveline.fmus.native.packaging import FMI_HEADERS
+from fmublocks.builds import NotPossible, builders
+from fmublocks.description.units import base_exponents
+from fmublocks.description.variables import interface
+from fmublocks.native.packaging import FMI_HEADERS
 from tests.fmus.host import in_words_of_fmi2, opened
 from tests.fmus.native.any_build import *  # noqa: F403
 from tests.fmus.native.test_rates import (  # noqa: F401

@@ -7,12 +7,12 @@ import subprocess
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.variables import interface
-from driveline.fmus.native.compiler import host_compiler
-from driveline.fmus.native.packaging import C_FILES
-from driveline.fmus.native.trace import leaves
-from driveline.models.block.noise import M
-from driveline.models.block.types import ContinuousBlock, SampledBlock
+from fmublocks.block.noise import M
+from fmublocks.block.types import ContinuousBlock, SampledBlock
+from fmublocks.description.variables import interface
+from fmublocks.native.compiler import host_compiler
+from fmublocks.native.packaging import C_FILES
+from fmublocks.native.trace import leaves
 from tests.fmus.native.functions import Functions
 from tests.together import together
 

@@ -17,15 +17,15 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from driveline.fmus.native.compiler import FLAGS, host_compiler
-from driveline.fmus.native.packaging import C_FILES
-from driveline.fmus.native.shared_header import shared_header
-from driveline.fmus.native.tableau import rosenbrock_header, step_header
 from driveline.models import two_mass_driveline as driveline
-from driveline.models.block.explicit import TOLERANCE, small_sizes
-from driveline.models.block.implicit import NotIntegrable
-from driveline.models.block.integrator import Integrator, TooMuchWork
-from driveline.models.block.types import ContinuousBlock
+from fmublocks.block.explicit import TOLERANCE, small_sizes
+from fmublocks.block.implicit import NotIntegrable
+from fmublocks.block.integrator import Integrator, TooMuchWork
+from fmublocks.block.types import ContinuousBlock
+from fmublocks.native.compiler import FLAGS, host_compiler
+from fmublocks.native.packaging import C_FILES
+from fmublocks.native.shared_header import shared_header
+from fmublocks.native.tableau import rosenbrock_header, step_header
 from tests.models.block.test_integrator import *  # noqa: F403
 from tests.models.block.test_integrator import LITTLE_WORK, LIVELY, Body, MakeIntegrator, Nothing, P, block
 from tests.together import together
@@ -127,7 +127,7 @@ def integrator(tmp_path_factory: pytest.TempPathFactory) -> MakeIntegrator:
 @pytest.fixture
 def hurried(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> MakeIntegrator:
     """The same with little work allowed, which is compiled into it."""
-    monkeypatch.setattr("driveline.models.block.integrator.MOST_WORK", LITTLE_WORK)
+    monkeypatch.setattr("fmublocks.block.integrator.MOST_WORK", LITTLE_WORK)
     library = cache(lambda *sizes: compiled(tmp_path_factory.mktemp("hurried"), *sizes))
     return lambda block: CompiledIntegrator(library, block)
 

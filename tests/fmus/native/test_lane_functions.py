@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.fmus.lanes_here import FEATURES, lanes_here
-from driveline.fmus.native.compiler import compile_in, host_compiler
-from driveline.fmus.native.lanes import COMMON, FLAGS
-from driveline.fmus.native.packaging import C_FILES
+from fmublocks.native.compiler import compile_in, host_compiler
+from fmublocks.native.lanes import COMMON, FLAGS
+from fmublocks.native.packaging import C_FILES
 from tests.together import together
+from toolground.lanes_here import FEATURES, lanes_here
 
 pytestmark = pytest.mark.skipif(not lanes_here(), reason="this processor has no lanes")
 

@@ -15,12 +15,12 @@ from fmpy.validation import validate_fmu
 
 from benchmarks.model_exchange import integrated, recorded, stepped
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.units import base_exponents, rate_unit
-from driveline.fmus.description.variables import interface
-from driveline.harness.cosimulation.description import document_root
-from driveline.harness.cosimulation.limits import USUAL_LIMITS
 from driveline.harness.loop.places import NATIVE, PLANTS
-from driveline.models.block.types import ContinuousBlock
+from fmublocks.block.types import ContinuousBlock
+from fmublocks.description.units import base_exponents, rate_unit
+from fmublocks.description.variables import interface
+from fmuloop.description import document_root
+from fmuloop.limits import USUAL_LIMITS
 from tests.fmus.host import opened
 from tests.fmus.native.test_places import ROOM, call
 from tests.together import together

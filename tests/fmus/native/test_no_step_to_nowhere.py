@@ -6,12 +6,12 @@ from typing import Annotated, NamedTuple
 import pytest
 from pythonfmu import Fmi2Slave
 
-from driveline.fmus.fmu import Fmu
-from driveline.fmus.python.refusal import Refused
-from driveline.fmus.python.slave import FMI_DISCARD, BlockSlave
-from driveline.models.block.declaration import Real
-from driveline.models.block.operators import where
-from driveline.models.block.types import ContinuousBlock
+from fmublocks.block.declaration import Real
+from fmublocks.block.operators import where
+from fmublocks.block.types import ContinuousBlock
+from fmublocks.fmu import Fmu
+from fmublocks.python.refusal import Refused
+from fmublocks.python.slave import FMI_DISCARD, BlockSlave
 from tests.fmus.host import opened
 from tests.together import together
 
@@ -100,7 +100,7 @@ def test_a_step_to_nowhere_is_refused(native_builder, tmp_path, pull, message):
 @pytest.fixture
 def little_work(monkeypatch):
     """Of integration, in both builds: a stretch is an explicit step."""
-    monkeypatch.setattr("driveline.models.block.integrator.MOST_WORK", 49)
+    monkeypatch.setattr("fmublocks.block.integrator.MOST_WORK", 49)
 
 
 TOO_LONG = "the step of 0.51 s is refused; n changes so fast that it would take too long; shorter steps are allowed"

@@ -11,9 +11,10 @@ import fmpy
 import pytest
 from fmpy.build import build_platform_binary
 
-from driveline.fmus.building.builds import NotPossible, build_fmus
+from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native import compiler
+from fmublocks.builds import NotPossible
+from fmublocks.native import compiler
 from tests import ROOT
 from tests.fmus.host import opened
 from tests.together import together
@@ -107,10 +108,10 @@ def test_a_compiler_that_refuses_is_named_in_one_line_with_what_it_says(monkeypa
 
 def test_where_there_is_no_compiler_that_of_zig_is_taken(monkeypatch):
     monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr("driveline.fmus.native.compiler.shutil.which", lambda name: None)
-    monkeypatch.setattr("driveline.fmus.native.compiler.find_spec", lambda name: object())
+    monkeypatch.setattr("fmublocks.native.compiler.shutil.which", lambda name: None)
+    monkeypatch.setattr("fmublocks.native.compiler.find_spec", lambda name: object())
     assert compiler.host_command() == [sys.executable, "-m", "ziglang", "cc"]
-    monkeypatch.setattr("driveline.fmus.native.compiler.find_spec", lambda name: None)
+    monkeypatch.setattr("fmublocks.native.compiler.find_spec", lambda name: None)
     with pytest.raises(compiler.CompilerError, match=r"no C compiler 'cc' .*`pip install ziglang` has one"):
         compiler.host_command()
 

@@ -12,12 +12,12 @@ import pytest
 
 from benchmarks.host_table import LINES, PACKAGES
 from driveline.fmus.building.builds import build_fmus
-from driveline.fmus.building.own_file import fmu_in
-from driveline.fmus.errors import BuildError
 from driveline.harness.loop.places import NATIVE
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
+from fmublocks.errors import BuildError
+from fmublocks.own_file import fmu_in
 from tests import ROOT
 
 

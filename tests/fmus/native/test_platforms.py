@@ -7,10 +7,10 @@ from functools import cache
 
 import pytest
 
-from driveline.fmus.building.builds import builders
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native.compiler import MAC_ARM, MAC_INTEL, universal
-from driveline.fmus.native.xcp import FOLDER
+from fmublocks.builds import builders
+from fmublocks.native.compiler import MAC_ARM, MAC_INTEL, universal
+from fmublocks.native.xcp import FOLDER
 from tests.skipping import skipped_if_impossible
 
 LARGEST = 280 * 1024

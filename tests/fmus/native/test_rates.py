@@ -7,7 +7,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 
 from driveline.fmus.catalogue import FMUS
-from driveline.models.block.types import ContinuousBlock
+from fmublocks.block.types import ContinuousBlock
 from tests.fmus.host import opened
 from tests.together import together
 

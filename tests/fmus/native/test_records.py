@@ -7,15 +7,15 @@ from typing import Annotated, Any, NamedTuple
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.fmu import Fmu
-from driveline.fmus.native.records import records_of, structs
-from driveline.fmus.native.source import block_sources
-from driveline.fmus.native.statements import Statements
-from driveline.fmus.native.terms import Terms
-from driveline.models.block.declaration import Boolean, Real
-from driveline.models.block.operators import maximum, sqrt, where
-from driveline.models.block.runner import runner
-from driveline.models.block.types import SampledBlock
+from fmublocks.block.declaration import Boolean, Real
+from fmublocks.block.operators import maximum, sqrt, where
+from fmublocks.block.runner import runner
+from fmublocks.block.types import SampledBlock
+from fmublocks.fmu import Fmu
+from fmublocks.native.records import records_of, structs
+from fmublocks.native.source import block_sources
+from fmublocks.native.statements import Statements
+from fmublocks.native.terms import Terms
 from tests.fmus.host import opened
 from tests.fmus.native.recorded import recorded
 from tests.together import together

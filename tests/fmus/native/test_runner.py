@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from driveline.fmus.fmu import Fmu
-from driveline.fmus.native.compiler import FLAGS, host_compiler
-from driveline.fmus.native.packaging import c_sources
-from driveline.models.block.runner import SampledRunner
-from driveline.models.block.types import SampledBlock
+from fmublocks.block.runner import SampledRunner
+from fmublocks.block.types import SampledBlock
+from fmublocks.fmu import Fmu
+from fmublocks.native.compiler import FLAGS, host_compiler
+from fmublocks.native.packaging import c_sources
 from tests.models.block.test_runner import (  # noqa: F401
     START,
     Counter,

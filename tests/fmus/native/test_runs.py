@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.variables import interface
-from driveline.models.block.types import ContinuousBlock
+from fmublocks.block.types import ContinuousBlock
+from fmublocks.description.variables import interface
 from tests.slow import slow
 
 CASES = [

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from driveline.fmus import protocol
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.variables import interface
-from driveline.fmus.native.records import paths, records_of
+from fmublocks import protocol
+from fmublocks.description.variables import interface
+from fmublocks.native.records import paths, records_of
 from tests.fmus.forged import forged
 from tests.fmus.host import Host, opened
 from tests.together import together

@@ -7,8 +7,8 @@ import fmpy
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native.compiler import FLAGS, host_compiler
-from driveline.fmus.native.shared_header import definition
+from fmublocks.native.compiler import FLAGS, host_compiler
+from fmublocks.native.shared_header import definition
 from tests.fmus.host import opened
 from tests.together import together
 

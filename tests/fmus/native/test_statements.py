@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from typing import Any
 
-from driveline.fmus.native.arithmetic import LOOKED_UP
-from driveline.fmus.native.lanes import LANES, LaneStatements
-from driveline.fmus.native.statements import LOOPED, Statements
-from driveline.fmus.symbol import Symbol
-from driveline.models.block import operators
-from driveline.models.block.operators import interpolate, logical_and, sin, where
+from fmublocks.block import operators
+from fmublocks.block.operators import interpolate, logical_and, sin, where
+from fmublocks.native.arithmetic import LOOKED_UP
+from fmublocks.native.lanes import LANES, LaneStatements
+from fmublocks.native.statements import LOOPED, Statements
+from fmublocks.symbol import Symbol
 from tests.fmus.native.recorded import recorded
 from tests.together import together
 

@@ -13,10 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
-from driveline.fmus.building.builds import NotPossible, sender_builder
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.terminal import FOLDER, OPERATIONS_SIZE
 from driveline.models.wheel_speed_can import FRAME
+from fmublocks.builds import NotPossible, sender_builder
+from fmublocks.description.terminal import FOLDER, OPERATIONS_SIZE
 from tests.fmus.bus import CAN_TRANSMIT, CONFIGURATION, CONFIRM, FORMAT_ERROR, Node, Operation, frame_in, written
 from tests.fmus.forged import sealed
 

@@ -15,8 +15,8 @@ import fmpy
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.variables import interface
-from driveline.fmus.native.xcp import FOLDER, address_in
+from fmublocks.description.variables import interface
+from fmublocks.native.xcp import FOLDER, address_in
 from tests.fmus.host import Host, opened
 from tests.together import together
 

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from driveline.fmus.python import content
+from fmublocks.python import content
 from tests.fmus.forged import with_checksum
 from tests.fmus.host import opened
 from tests.together import together

@@ -11,7 +11,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from driveline.fmus.native.compiler import host_compiler
+from fmublocks.native.compiler import host_compiler
 from tests.fmus.libpython import with_libpython
 from tests.skipping import skipped_if_impossible
 from tests.together import together

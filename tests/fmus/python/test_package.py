@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.python.bundle import imported, package_name, source_path
-from driveline.fmus.python.packaging import build
-from driveline.fmus.release import DATE
+from fmublocks.python.bundle import imported, package_name, source_path
+from fmublocks.python.packaging import build
+from fmublocks.release import DATE
 from tests import ROOT, copied_sources
 from tests.fmus.host import opened
 from tests.together import together

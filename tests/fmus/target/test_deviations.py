@@ -5,10 +5,11 @@ import shutil
 import pytest
 
 from docs.studies.target_deviations import CHECKER, DEVIATIONS, GENERATED, Finding, findings, reason
-from driveline.fmus.native.compiler import CompilerError
-from driveline.fmus.native.statements import SINGLE
-from driveline.fmus.target.image import require_packages
-from driveline.fmus.target.sources import CONTROLLERS, target_sources
+from driveline.fmus.catalogue import CONTROLLERS
+from fmublocks.native.compiler import CompilerError
+from fmublocks.native.statements import SINGLE
+from fmublocks.target.image import require_packages
+from fmublocks.target.sources import target_sources
 from tests.skipping import skipped_if_impossible
 
 SOURCES = target_sources(CONTROLLERS["DampingController"], SINGLE)

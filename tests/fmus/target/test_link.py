@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus.target import link
-from driveline.fmus.target.link import Link, TargetError
+from fmublocks.target import link
+from fmublocks.target.link import Link, TargetError
 from tests.together import together
 
 PROGRAM = """
@@ -104,7 +104,7 @@ def test_nothing_is_left_when_the_one_that_started_it_is_killed() -> None:
     """Even if the target hangs and does not see that its link was closed."""
     text = f"""
 import sys, time
-from driveline.fmus.target.link import Link
+from fmublocks.target.link import Link
 running = Link([sys.executable, "-c", {PROGRAM.replace("OTHERWISE", "time.sleep(60)")!r}], "the target")
 print(running._process.pid, flush=True)
 time.sleep(60)

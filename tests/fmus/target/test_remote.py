@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import EVERY, FMUS
-from driveline.fmus.description.a2l import DOUBLE, SINGLE, Item, _described
-from driveline.fmus.description.variables import interface
-from driveline.fmus.target import image, remote
-from driveline.fmus.target.link import Answer
-from driveline.fmus.target.remote import Remote
+from fmublocks.description.a2l import DOUBLE, SINGLE, Item, _described
+from fmublocks.description.variables import interface
+from fmublocks.target import image, remote
+from fmublocks.target.link import Answer
+from fmublocks.target.remote import Remote
 
 BLOCK = FMUS["DampingController"].block
 P, U = BLOCK.Parameters(), BLOCK.Input()

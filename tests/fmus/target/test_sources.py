@@ -11,20 +11,20 @@ from platform import machine
 import numpy as np
 import pytest
 
-from driveline.fmus.catalogue import FMUS
-from driveline.fmus.description.variables import interface
-from driveline.fmus.native.compiler import CompilerError, host_compiler
-from driveline.fmus.native.statements import SINGLE
-from driveline.fmus.target.image import FLAGS, host_program
-from driveline.fmus.target.link import Link
-from driveline.fmus.target.sources import CONTROLLERS, PRECISIONS, target_sources
+from driveline.fmus.catalogue import CONTROLLERS, FMUS
 from driveline.harness.exchange.target.comparison import responses
 from driveline.harness.exchange.target.offline_cases import Case, recorded
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
-from driveline.models.block.declaration import Enumeration
 from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK as CONTROLLER
+from fmublocks.block.declaration import Enumeration
+from fmublocks.description.variables import interface
+from fmublocks.native.compiler import CompilerError, host_compiler
+from fmublocks.native.statements import SINGLE
+from fmublocks.target.image import FLAGS, host_program
+from fmublocks.target.link import Link
+from fmublocks.target.sources import PRECISIONS, target_sources
 from tests.slow import slow
 from tests.together import together
 

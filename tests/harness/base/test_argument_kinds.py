@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import driveline
-from driveline.harness.base.argument_kinds import require_each
-from driveline.harness.base.errors import WiringError
+from fmuloop.argument_kinds import require_each
+from fmuloop.errors import WiringError
 
 TIPIN = driveline.MANOEUVRES["tipin15"]
 RESULTS = np.zeros(3)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from driveline.harness.base.atomic_files import as_before_if_stopped, remove, unchanged_if_stopped, write_text
+from toolground.atomic_files import as_before_if_stopped, remove, unchanged_if_stopped, write_text
 
 
 def files(folder: Path) -> dict[str, str]:

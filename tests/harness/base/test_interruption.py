@@ -14,7 +14,6 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.interruption import Stopped, stoppable, uninterrupted_children, unswallowed
 from driveline.harness.commands import design
 from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -23,6 +22,7 @@ from driveline.harness.simulation.simulate import simulate
 from tests import ROOT
 from tests.signals import heed_signals, started
 from tests.together import together
+from toolground.interruption import Stopped, stoppable, uninterrupted_children, unswallowed
 
 TWO_CORES = {"LOKY_MAX_CPU_COUNT": 2}
 """Environment of a command with workers."""
@@ -145,7 +145,7 @@ def test_a_signal_is_not_taken_for_a_refusal_of_the_fmu_whose_python_it_meets(
         signal.signal(number, before)
 
 
-@pytest.mark.parametrize("last", ["driveline.harness.base.errors", "driveline.harness.commands.cli"])
+@pytest.mark.parametrize("last", ["toolground.errors", "driveline.harness.commands.cli"])
 def test_stopped_while_it_is_imported_it_says_so_in_one_line(last: str) -> None:
     """Nothing of the command line is imported before the place that does."""
     program = f"""
@@ -264,7 +264,7 @@ def test_a_stream_that_is_closed_stops_no_workers_and_is_no_file_of_ours(tmp_pat
     program = """
 from driveline.harness.commands import design
 from driveline.harness.commands.cli import main
-from driveline.harness.simulation.many_runs import run_many
+from fmuloop.many_runs import run_many
 main(["design", "--quiet", "--output", "gains.toml"])
 with open("answers", "w") as file:
     assert file.fileno() > 2

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from driveline.harness.base.longest_interval import longest_run
+from driverecords.longest_interval import longest_run
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from driveline.harness.base.progress import chunks, hidden, part, progress
+from toolground.progress import chunks, hidden, part, progress
 
 
 class Terminal(io.StringIO):
@@ -21,7 +21,7 @@ class Terminal(io.StringIO):
 @pytest.fixture(autouse=True)
 def time_does_not_matter(monkeypatch):
     for name in ("QUIET", "LEAST_PAUSE", "MOST_PAUSE", "REFRESH"):
-        monkeypatch.setattr(f"driveline.harness.base.progress.{name}", 0.001)
+        monkeypatch.setattr(f"toolground.progress.{name}", 0.001)
     monkeypatch.setenv("TERM", "xterm")
 
 
@@ -81,7 +81,7 @@ def test_nothing_is_left_of_it():
 
 
 def test_a_short_run_is_not_shown(monkeypatch):
-    monkeypatch.setattr("driveline.harness.base.progress.QUIET", 3600.0)
+    monkeypatch.setattr("toolground.progress.QUIET", 3600.0)
     for stream in (Terminal(), io.StringIO()):
         with redirect_stderr(stream) as shown:
             make("tip-in")
@@ -108,7 +108,7 @@ def test_a_log_gets_a_line_now_and_then(stream, monkeypatch):
 
 
 def test_a_log_is_not_flooded(monkeypatch):
-    monkeypatch.setattr("driveline.harness.base.progress.LEAST_PAUSE", 3600.0)
+    monkeypatch.setattr("toolground.progress.LEAST_PAUSE", 3600.0)
     with redirect_stderr(io.StringIO()) as written:
         make("tip-in", steps=10000)
     assert written.getvalue() == ""
@@ -194,7 +194,7 @@ def test_threads_do_not_hide_each_others_progress():
 @pytest.fixture
 def kernel(monkeypatch):
     """What the kernel of a notebook has displayed."""
-    monkeypatch.setattr("driveline.harness.base.progress.QUIET", -1.0)
+    monkeypatch.setattr("toolground.progress.QUIET", -1.0)
     display = pytest.importorskip("IPython.display", reason="needs the extra `notebook`")
     displayed = []
 

@@ -8,8 +8,8 @@ from threading import Event
 
 import pytest
 
-from driveline.harness.base import status_line
-from driveline.harness.base.status_line import Line, waiting
+from toolground import status_line
+from toolground.status_line import Line, waiting
 
 
 class Terminal(io.StringIO):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from driveline.harness.base.user_cache import MOST_KEPT, kept
+from toolground.user_cache import MOST_KEPT, kept
 
 CONTENT = bytes(range(256)) * 4
 

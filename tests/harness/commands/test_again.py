@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.digest import digest
 from driveline.harness.commands import again
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.same_results import different_files, further_cases
 from driveline.harness.simulation.case_archive import GOES_ON
 from tests.harness.commands import Capsys, answer
+from toolground.digest import digest
 
 NAME = "TwoMassDriveline_tipin0_DampingController"
 

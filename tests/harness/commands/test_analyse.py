@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.analyse import finite
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.own_controller import with_equations
@@ -18,6 +17,7 @@ from driveline.harness.studies.margins.loop_analysis import Analysis, Part, line
 from driveline.harness.studies.margins.parameter_sweeps import SWEEPS, Swept
 from driveline.harness.studies.margins.sensitivity import SHOWN, Sensitivity
 from tests.harness.commands import Capsys
+from toolground.errors import UserError
 
 PLANT = "TwoMassDriveline"
 
@@ -63,7 +63,7 @@ def test_a_wrong_vehicle_file_and_a_loop_that_is_not_stable_are_said(tmp_path: P
     assert not (tmp_path / "results").exists()
     stable, unstable = ({PLANT: {"controller.k_v": k_v, "controller.omega_v": 25.0}} for k_v in (4.0, 5.0))
     assert linear_part(Part(PLANT, "15"), "SpeedWashout", stable).margins.gain_margin > 1.0
-    with pytest.raises(DrivelineError, match=r"SpeedWashout is not stable in contact at 15 km/h: it has no margins"):
+    with pytest.raises(UserError, match=r"SpeedWashout is not stable in contact at 15 km/h: it has no margins"):
         linear_part(Part(PLANT, "15"), "SpeedWashout", unstable)
 
 
@@ -85,7 +85,7 @@ def test_a_controller_of_the_users_own_is_analysed_by_its_equations(tmp_path: Pa
     lacks = OWN.replace('name="Mine"', 'name="Lacks", Input=replaced')
     lacks = lacks.replace("BLOCK =", "replaced = type('Input', (WASHOUT.Input,), {'_fields': ('T_driver',)})\nBLOCK =")
     (tmp_path / "Lacks.py").write_text(lacks, encoding="utf-8")
-    with pytest.raises(DrivelineError, match=r"Lacks has no omega_1_meas, .*`driveline.supervised` makes"):
+    with pytest.raises(UserError, match=r"Lacks has no omega_1_meas, .*`driveline.supervised` makes"):
         linear_part(Part(PLANT, "15"), str(tmp_path / "Lacks.fmu"), {PLANT: {}})
 
 

@@ -15,10 +15,10 @@ from driveline.harness.design.design import design
 from driveline.harness.design.search import cost_evaluation, pareto_figure
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
-from driveline.harness.simulation import many_runs
 from driveline.harness.simulation.case_archive import GOES_ON, CaseArchive
 from driveline.harness.studies.faults import fault_report
 from driveline.harness.studies.robustness import robustness_report
+from fmuloop import many_runs
 from tests.harness.commands import Capsys
 
 SHORT = (Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from driveline.harness.commands.cli import main
-from driveline.harness.recordings.channels import Channels
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.measurement import read_measurement
 from driveline.harness.views.signals_file import FORMATS
+from driverecords.channels import Channels
+from driverecords.drive import read_drive
+from driverecords.measurement import read_measurement
 from tests.slow import slow
 
 pytestmark = pytest.mark.usefixtures("read_here")

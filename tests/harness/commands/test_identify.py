@@ -18,7 +18,7 @@ from driveline.harness.design.design_weights import PLANT
 from driveline.harness.identification import prior_knowledge
 from driveline.harness.identification.identify import Identified
 from driveline.harness.loop.settings import Settings
-from driveline.harness.recordings.measurement import read_measurement
+from driverecords.measurement import read_measurement
 from tests.harness.commands import Capsys
 
 FILES = {"car.toml", "car_identified.json", "car.json", "car.png"}

@@ -10,7 +10,6 @@ import pytest
 
 from driveline.fmus.building.parameter_files import seeds
 from driveline.fmus.catalogue import FMUS
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.options import (
     Figures,
     assignment,
@@ -28,8 +27,9 @@ from driveline.harness.commands.recorded import Recorded
 from driveline.harness.commands.settings import caption
 from driveline.harness.studies.compare.compare import Case
 from driveline.harness.views.figure_options import FigureOptions
-from driveline.models.block.declaration import Integer, variables
+from fmublocks.block.declaration import Integer, variables
 from tests.harness.commands import Capsys, given
+from toolground.errors import UserError
 
 Parse = Callable[[str], Any]
 
@@ -115,7 +115,7 @@ def test_a_window_and_the_kinds_of_figures_are_those_that_are_asked_for() -> Non
     assert options_for(5.99, 9.0).clipped(0.0, 6.0) == (5.99, 6.0)
     assert options_for(-1.0, 0.1).clipped(0.0, 6.0) == (0.0, 0.1)
     for start, end in ((6.0, 9.0), (-1.0, 0.0), (30.0, 40.0)):
-        with pytest.raises(DrivelineError, match=f"--window {start:g},{end:g}: tipin15 is from 0 to 6 s"):
+        with pytest.raises(UserError, match=f"--window {start:g},{end:g}: tipin15 is from 0 to 6 s"):
             options_for(start, end)
     asked = Figures(figures=("svg", "png", "svg"))
     assert asked.options("said") == FigureOptions("said", None, ("svg", "png"))

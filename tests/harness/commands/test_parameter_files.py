@@ -3,14 +3,15 @@
 import pytest
 
 from driveline.fmus.errors import ParameterFileError
-from driveline.harness.base.errors import DrivelineError, WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.settings import all_settings, settings
 from driveline.harness.loop import built_fmus
 from driveline.harness.loop.places import PLANTS
+from fmuloop.errors import WiringError
 from tests import ROOT
 from tests.foreign import SMALLEST_CONTROLLER, build_car, build_relay, tampered
 from tests.harness.commands import given as record
+from toolground.errors import UserError
 
 VAN = str(ROOT / "examples" / "cars" / "van.toml")
 
@@ -55,7 +56,7 @@ def test_a_file_of_a_car_with_gains_or_for_another_controller_is_refused(given, 
         given("--vehicle", gains)
     assert main(["build", "NoDamping", "--build", "python", "--output", str(tmp_path), "--quiet"]) == 0
     controller = str(tmp_path / "NoDamping.fmu")
-    with pytest.raises(DrivelineError, match=r"gains\.toml: NoDamping\.fmu has no parameter k_d$"):
+    with pytest.raises(UserError, match=r"gains\.toml: NoDamping\.fmu has no parameter k_d$"):
         given("--parameters", gains, controller=controller)
     path = tmp_path / "of_both.toml"
     path.write_text("T_take_max = 80\n", encoding="utf-8")

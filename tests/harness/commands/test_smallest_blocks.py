@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 from driveline.fmus.catalogue import EVERY, SIGNAL_FAULTS
-from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import NO_DAMPING
 from tests.foreign import CAR, SMALLEST_CONTROLLER, build_relay
 from tests.harness.commands import Capsys
+from toolground.collected_warnings import warn_once
 
 COMMANDS = {
     "simulate": ["--manoeuvre", "tipin15"],

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.errors import SimulationError
 from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.errors import SimulationError
+from fmuloop.many_runs import run_many
 from tests.foreign.stranger import build_stranger
 from tests.signals import started
 from tests.slow import slow

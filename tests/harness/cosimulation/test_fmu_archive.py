@@ -7,16 +7,17 @@ from zipfile import ZIP_DEFLATED, ZipFile
 
 import pytest
 
-from driveline.harness.base.errors import DrivelineError, WiringError
-from driveline.harness.cosimulation import description, fmu_archive
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.limits import Limits
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.system import System
+from fmuloop import description, fmu_archive
+from fmuloop.errors import WiringError
+from fmuloop.experiment import Experiment
+from fmuloop.interface import Interface
+from fmuloop.limits import Limits
+from fmuloop.runs import run
+from fmuloop.system import System
 from tests.foreign import tampered
 from tests.foreign.archives import HOSTILE
 from tests.foreign.stranger import build_stranger
+from toolground.errors import UserError
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +31,7 @@ def test_a_hostile_archive_is_named_and_not_unpacked(stranger, tmp_path, unpacke
     path = tmp_path / "hostile.fmu"
     copyfile(stranger, path)
     spoil(path)
-    with pytest.raises(DrivelineError, match=message) as error:
+    with pytest.raises(UserError, match=message) as error:
         run(System({"a": path}), Experiment(0.01))
     assert str(error.value).isprintable()
     assert "hostile.fmu" in str(error.value)

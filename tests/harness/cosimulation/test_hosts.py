@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.places import BUILDS, PLANTS
 from driveline.harness.loop.settings import loop
+from fmuloop.experiment import Experiment
+from fmuloop.runs import run
+from fmuloop.system import Scheme
 
 STEPS, STEP_SIZE = 400, 1e-3
 T_DRIVER = 60.0

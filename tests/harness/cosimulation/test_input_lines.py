@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from driveline.harness.cosimulation.input_lines import Line, slope, start
+from fmuloop.input_lines import Line, slope, start
 
 values = st.floats(-1e3, 1e3)
 steps = st.floats(1e-5, 1e-1)

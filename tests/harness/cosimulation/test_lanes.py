@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import EVERY
-from driveline.fmus.lanes_here import FEATURES, lanes_here
-from driveline.fmus.native.lanes import build_lanes
-from driveline.harness.base.errors import SimulationError, WiringError
-from driveline.harness.cosimulation import row_file
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.lanes import LaneLoop
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.master import Loop
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
+from fmublocks.native.lanes import build_lanes
+from fmuloop import row_file
+from fmuloop.errors import SimulationError, WiringError
+from fmuloop.experiment import Experiment
+from fmuloop.lanes import LaneLoop
+from fmuloop.loading import loaded
+from fmuloop.master import Loop
+from fmuloop.system import Scheme
 from tests.slow import slow
+from toolground.lanes_here import FEATURES, lanes_here
 
 pytestmark = pytest.mark.skipif(not lanes_here(), reason="this processor has no lanes")
 

@@ -6,16 +6,16 @@ from shutil import copyfile
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import SimulationError, WiringError
-from driveline.harness.cosimulation import loading, runs
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.runs import MOST_KEPT, kept_loaded, run
-from driveline.harness.cosimulation.system import Connection, Scheme, System
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
+from fmuloop import loading, runs
+from fmuloop.errors import SimulationError, WiringError
+from fmuloop.experiment import Experiment
+from fmuloop.loading import loaded
+from fmuloop.runs import MOST_KEPT, kept_loaded, run
+from fmuloop.system import Connection, Scheme, System
 from tests.foreign import SMALLEST_CONTROLLER, build_relay
 from tests.slow import slow
 

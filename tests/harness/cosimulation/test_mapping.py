@@ -6,19 +6,19 @@ from math import pi
 import numpy as np
 import pytest
 
-from driveline.harness.base.collected_warnings import warn_once
-from driveline.harness.base.errors import WiringError
-from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.mapping import parsed
-from driveline.harness.cosimulation.steps import interpreted
-from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, simulate, start
+from fmuloop.compiled_steps import LIBRARY, CompiledSteps
+from fmuloop.errors import WiringError
+from fmuloop.experiment import Experiment
+from fmuloop.loading import loaded
+from fmuloop.mapping import parsed
+from fmuloop.steps import interpreted
+from fmuloop.wiring import fit
 from tests.foreign import build_car, tampered
+from toolground.collected_warnings import warn_once
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=1.2)
 

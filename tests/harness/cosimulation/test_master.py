@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from fmpy.util import read_csv
 
-from driveline.harness.base.csv_file import write_csv
-from driveline.harness.base.errors import SimulationError, WiringError
-from driveline.harness.cosimulation.experiment import Experiment, instants, memory
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.system import Connection, Scheme, System
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.errors import SimulationError, WiringError
+from fmuloop.experiment import Experiment, instants, memory
+from fmuloop.runs import run
+from fmuloop.system import Connection, Scheme, System
 from tests.fmus.host import opened
+from toolground.csv_file import write_csv
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ def test_progress_counts_all_steps(native, monkeypatch):
         shown.append((total, label))
         yield shown.append
 
-    monkeypatch.setattr("driveline.harness.cosimulation.master.progress", progress)
+    monkeypatch.setattr("fmuloop.master.progress", progress)
     system = System({"can": native / "WheelSpeedCan.fmu"}, (), own=frozenset(["can"]))
     run(system, Experiment(0.01, label="a run"))
     assert (shown[0], shown[-1]) == ((10, "a run"), 10)

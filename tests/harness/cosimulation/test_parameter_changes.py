@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 from docs.studies.bound import bounded
-from driveline.harness.base.errors import SimulationError, WiringError
 from driveline.harness.commands.cli import main
-from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment, instants
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.parameter_changes import Change, changes, initial, parted, require_constant
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.steps import interpreted
-from driveline.harness.cosimulation.system import Scheme, System
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.margins.loop_analysis import analyse
+from fmuloop.compiled_steps import LIBRARY, CompiledSteps
+from fmuloop.errors import SimulationError, WiringError
+from fmuloop.experiment import Experiment, instants
+from fmuloop.loading import loaded
+from fmuloop.parameter_changes import Change, changes, initial, parted, require_constant
+from fmuloop.runs import run
+from fmuloop.steps import interpreted
+from fmuloop.system import Scheme, System
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=1.3)
 TIME = instants(1.0, 0.1)

@@ -11,11 +11,11 @@ import pandas as pd
 import pytest
 from numpy.lib.recfunctions import repack_fields
 
-from driveline.harness.cosimulation.results import Results
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.signals_file import write_signals
+from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=0.2)
 

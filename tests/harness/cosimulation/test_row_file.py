@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.cosimulation import experiment, results, row_file
-from driveline.harness.cosimulation.results import Results
-from driveline.harness.cosimulation.row_file import RowFile, zeros
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.run_figure import plot_run
+from fmuloop import experiment, results, row_file
+from fmuloop.results import Results
+from fmuloop.row_file import RowFile, zeros
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=2.5)
 PNG = FigureOptions(kinds=("png",))

@@ -6,16 +6,16 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.errors import SimulationError, WiringError
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.feedthrough import Feedthrough, declared
-from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.schedule import Get, Move, Set, Step, Transfer, schedule, transfers
-from driveline.harness.cosimulation.system import Connection, Scheme, System
-from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.loop.settings import loop
+from fmuloop.errors import SimulationError, WiringError
+from fmuloop.experiment import Experiment
+from fmuloop.feedthrough import Feedthrough, declared
+from fmuloop.interface import Interface
+from fmuloop.loading import loaded
+from fmuloop.runs import run
+from fmuloop.schedule import Get, Move, Set, Step, Transfer, schedule, transfers
+from fmuloop.system import Connection, Scheme, System
+from fmuloop.wiring import fit
 from tests.foreign import tampered
 
 

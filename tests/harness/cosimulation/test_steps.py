@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import SimulationError
-from driveline.harness.cosimulation.calls import _change
-from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.steps import interpreted
-from driveline.harness.cosimulation.system import Connection, Scheme, System
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, start
+from fmuloop.calls import _change
+from fmuloop.compiled_steps import LIBRARY, CompiledSteps
+from fmuloop.errors import SimulationError
+from fmuloop.experiment import Experiment
+from fmuloop.loading import loaded
+from fmuloop.steps import interpreted
+from fmuloop.system import Connection, Scheme, System
 
 pytestmark = pytest.mark.skipif(LIBRARY is None, reason="the project was installed without a C compiler")
 

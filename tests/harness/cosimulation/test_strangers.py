@@ -16,19 +16,19 @@ import fmpy
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import RunEnded, SimulationError, UnpackingError, WiringError
-from driveline.harness.cosimulation import isolated_process
-from driveline.harness.cosimulation.call_trace import current, note
-from driveline.harness.cosimulation.compiled_steps import LIBRARY, CompiledSteps
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.isolated_process import IsolatedProcess
-from driveline.harness.cosimulation.limits import Limits
-from driveline.harness.cosimulation.loading import loaded
-from driveline.harness.cosimulation.process_answers import LENGTH, Answer, InvalidAnswer, receive, send
-from driveline.harness.cosimulation.runs import kept_loaded, run
-from driveline.harness.cosimulation.steps import interpreted
-from driveline.harness.cosimulation.system import Scheme, System
 from driveline.harness.loop.settings import loop as looped
+from fmuloop import isolated_process
+from fmuloop.call_trace import current, note
+from fmuloop.compiled_steps import LIBRARY, CompiledSteps
+from fmuloop.errors import RunEnded, SimulationError, UnpackingError, WiringError
+from fmuloop.experiment import Experiment
+from fmuloop.isolated_process import IsolatedProcess
+from fmuloop.limits import Limits
+from fmuloop.loading import loaded
+from fmuloop.process_answers import LENGTH, Answer, InvalidAnswer, receive, send
+from fmuloop.runs import kept_loaded, run
+from fmuloop.steps import interpreted
+from fmuloop.system import Scheme, System
 from tests import ROOT
 from tests.foreign import tampered
 from tests.foreign.stranger import build_stranger, in_words_of
@@ -386,9 +386,9 @@ def test_what_a_stranger_leaves_behind_is_not_waited_for(tmp_path, own_session):
 RUN = """
 import sys
 from pathlib import Path
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.system import System
+from fmuloop.experiment import Experiment
+from fmuloop.runs import run
+from fmuloop.system import System
 
 for _ in range(2): run(System(dict(zip("ab", map(Path, sys.argv[1:])))), Experiment(0.1))
 """

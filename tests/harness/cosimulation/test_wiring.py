@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import pytest
 
-from driveline.harness.base.errors import LONGEST_LINE, WiringError
-from driveline.harness.cosimulation import unpacked_fmu
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.interface import Interface, unit_of
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.system import Connection, System
-from driveline.harness.cosimulation.wiring import fit, out_of_bounds
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
+from fmuloop import unpacked_fmu
+from fmuloop.errors import LONGEST_LINE, WiringError
+from fmuloop.experiment import Experiment
+from fmuloop.interface import Interface, unit_of
+from fmuloop.runs import run
+from fmuloop.system import Connection, System
+from fmuloop.wiring import fit, out_of_bounds
 from tests.foreign import tampered
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=0.2)

@@ -20,8 +20,8 @@ from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.many_runs import run_many
 from tests import ROOT
 
 DESIGN_MODEL, VEHICLE, OURS = "TwoMassDriveline", "ValidationVehicle", "DampingController"

@@ -5,13 +5,13 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.errors import WiringError
 from driveline.harness.commands.cli import main
-from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.mapping import parsed, read
 from driveline.harness.exchange.mapping_draft import as_toml, draft, words
 from driveline.harness.loop.places import PLACES
 from driveline.harness.loop.settings import settings
+from fmuloop.errors import WiringError
+from fmuloop.interface import Interface
+from fmuloop.mapping import parsed, read
 from tests.foreign import SMALLEST_CONTROLLER, build_relay, tampered
 
 NAMES = {

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.explorer.module import standard
 from driveline.harness.loop.places import STEP_SIZE, T_S
 from driveline.harness.metrics.spectrum import DRIVE_TRAIN
+from toolground.errors import UserError
 
 SCRIPTS = Path(standard.__code__.co_filename).parent / "page"
 
@@ -22,7 +22,7 @@ def loops() -> dict[str, Any]:
     """The module; skips the test, and says so, where it cannot be made."""
     try:
         return standard()
-    except DrivelineError as reason:
+    except UserError as reason:
         pytest.skip(str(reason))
 
 

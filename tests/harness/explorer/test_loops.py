@@ -143,7 +143,7 @@ def test_what_follows_from_a_car_follows_as_in_a_vehicle_file(tmp_path: Path) ->
 @pytest.mark.slow
 def test_comfort_swings_and_jerks_less_and_sport_answers_sooner(native: Path) -> None:
     """In the mean over the steps on both plants."""
-    from driveline.harness.cosimulation.interface import Interface
+    from fmuloop.interface import Interface
 
     declared = Interface(native / f"{OURS}.fmu").variables
 

@@ -263,7 +263,7 @@ def test_without_zig_and_module_or_recording_one_line_says_so_and_nothing_is_bui
 ) -> None:
     monkeypatch.setattr(module, "PACKAGED", tmp_path / "none")
     monkeypatch.setattr(module, "user_cache", lambda: tmp_path)
-    monkeypatch.setattr("driveline.fmus.native.compiler.find_spec", lambda _: None)
+    monkeypatch.setattr("fmublocks.native.compiler.find_spec", lambda _: None)
     monkeypatch.setattr(explore, "all_settings", pytest.fail)
     assert main(["explore", "--output", str(tmp_path / "page.html")]) == 2
     said = r"driveline explore: there is no Zig .* pip install ziglang; or .* from a wheel\n"

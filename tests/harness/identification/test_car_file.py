@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from driveline.fmus.building.parameter_files import read_vehicle
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.identification import car_file, prior_knowledge
 from driveline.harness.identification.car_file import WIDEST_INTERVAL
 from driveline.harness.identification.diagnostics import LACKING
@@ -22,9 +21,10 @@ from driveline.harness.identification.identify import WITHOUT_LOAD, Identified, 
 from driveline.harness.identification.step import Step
 from driveline.harness.identification.two_mass_equivalent import detailed_over_design, equivalent
 from driveline.harness.loop.settings import Settings
-from driveline.harness.recordings.measurement import Measurement
-from driveline.harness.recordings.source import RecordingError
+from driverecords.measurement import Measurement
+from driverecords.source import RecordingError
 from tests.harness.identification.simulated import LOOP, NOISE, identified
+from toolground.errors import UserError
 
 FOUND = identified()
 LACKS = identified(lack_L=1.01 * LACKING * NOISE.T_load)
@@ -120,7 +120,7 @@ def test_a_gap_that_no_plant_confirms_is_as_wide_as_the_filter_may_be_off(
 def test_what_was_identified_is_not_lost_where_no_plants_can_be_built(monkeypatch: pytest.MonkeyPatch) -> None:
     def built(loops: Iterable[Settings]) -> None:
         assert {made.build for made in loops} == {"native"}, "the other takes minutes"
-        raise DrivelineError("no C compiler")
+        raise UserError("no C compiler")
 
     monkeypatch.setattr(prior_knowledge, "built_together", built)
     monkeypatch.setattr(prior_knowledge, "identified_from", lambda *_: LACKS)

@@ -14,10 +14,10 @@ from driveline.harness.identification.drive_train_response import FREQUENCIES, r
 from driveline.harness.identification.fit_figures import INSIDE, plot_fit, predicted
 from driveline.harness.identification.identify import WITHOUT_LOAD
 from driveline.harness.identification.prediction import Predictor
-from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.measurement import Measurement
 from driveline.harness.views.figure_options import FigureOptions
 from driveline.harness.views.panels import Curve
+from driverecords.file_units import FileUnit
+from driverecords.measurement import Measurement
 from tests.harness.identification.simulated import BEHIND, NOISE, SPARE, T_S, P, identified, simulated, states
 
 WRITTEN = {

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.base.csv_file import write_csv
 from driveline.harness.identification.car_file import identified_car
 from driveline.harness.identification.identify import WITHOUT_LOAD, Identified, nrmse
 from driveline.harness.identification.prior_knowledge import identify
 from driveline.harness.manoeuvres.prbs import binary_torque
-from driveline.harness.recordings.measurement import Measurement, read_measurement
 from driveline.harness.simulation.excitation_drive import MeasurementWheels, sensed
 from driveline.harness.simulation.simulate import simulate
+from driverecords.measurement import Measurement, read_measurement
+from toolground.csv_file import write_csv
 
 RECORDED = Path(__file__).parents[4] / "shared/data/prbs"
 """Of a loop that nobody here has made."""

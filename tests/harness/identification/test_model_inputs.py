@@ -10,8 +10,8 @@ from driveline.harness.identification.drive_train import STEPS
 from driveline.harness.identification.identify import of_sensors
 from driveline.harness.identification.model_inputs import GAP, UNEVEN, drive_of
 from driveline.harness.identification.torque_loop import MET, TorqueLoop
-from driveline.harness.recordings.measurement import Measurement
-from driveline.harness.recordings.source import RecordingError
+from driverecords.measurement import Measurement
+from driverecords.source import RecordingError
 
 T_S = 0.002
 TIME = 0.5 + T_S * np.arange(400)

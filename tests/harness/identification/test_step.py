@@ -11,8 +11,8 @@ from driveline.harness.commands.cli import main
 from driveline.harness.commands.identify_step import WIDEST, _lines
 from driveline.harness.identification.step import identify_step, tip
 from driveline.harness.loop.settings import Settings
-from driveline.harness.recordings.measurement import Measurement
-from driveline.harness.recordings.source import RecordingError
+from driverecords.measurement import Measurement
+from driverecords.source import RecordingError
 
 CAR = {"C": 95.0, "phi_B": 0.22, "m": 1600.0}
 

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 
 from driveline.harness.identification.torque_loop import PARAMETERS, SQRT_2, FittedLoop, TorqueLoop, fitted
 from driveline.harness.manoeuvres.prbs import binary_torque, shift_register
-from driveline.harness.recordings.source import RecordingError
 from driveline.harness.simulation.simulate import simulate
+from driverecords.source import RecordingError
 from tests.slow import slow
 from tests.together import together
 

@@ -8,17 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus import origin
 from driveline.fmus.catalogue import EVERY
-from driveline.fmus.origin import is_stale, origin_of
-from driveline.fmus.python.packaging import build
-from driveline.harness.base.errors import DrivelineError
-from driveline.harness.base.user_cache import MOST_KEPT
+from driveline.fmus.origin import is_stale
 from driveline.harness.loop import fmu_cache
 from driveline.harness.loop.fmu_cache import as_built, refreshed_copy
 from driveline.harness.loop.places import BUILD
+from fmublocks import origin
+from fmublocks.origin import origin_of
+from fmublocks.python.packaging import build
 from tests import ROOT
 from tests.harness.base.test_user_cache import DAMAGES
+from toolground.errors import UserError
+from toolground.user_cache import MOST_KEPT
 
 CAN, LOOP = EVERY["WheelSpeedCan"], EVERY["MotorTorqueLoop"]
 
@@ -120,7 +121,7 @@ def test_a_cache_that_cannot_be_written_is_named_in_a_line_with_what_moves_it(
     given: Path, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cache.parent.parent.write_text("a file where a folder would be")
-    with pytest.raises(DrivelineError) as refused:
+    with pytest.raises(UserError) as refused:
         refreshed_copy([CAN], given, "python")
     assert str(refused.value) == (
         f"the cache {cache} cannot be written: Not a directory; "
@@ -129,7 +130,7 @@ def test_a_cache_that_cannot_be_written_is_named_in_a_line_with_what_moves_it(
     (tmp_path / "a\n\x1b[31mb").write_text("a file where a folder would be")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "a\n\x1b[31mb"))
     with pytest.raises(
-        DrivelineError, match=r"^the cache \S+/a \[31mb/driveline-damping/fmus cannot be written: "
+        UserError, match=r"^the cache \S+/a \[31mb/driveline-damping/fmus cannot be written: "
     ) as refused:
         refreshed_copy([CAN], given, "python")
     assert str(refused.value).isprintable()
@@ -141,7 +142,7 @@ def test_a_full_disk_of_the_cache_is_not_told_of_what_is_copied_to_it(given, cac
 
     build(CAN, given)
     monkeypatch.setattr(fmu_cache, "copyfile", copyfile)
-    with pytest.raises(DrivelineError, match=f"^the cache {cache} cannot be written: No space left on device; "):
+    with pytest.raises(UserError, match=f"^the cache {cache} cannot be written: No space left on device; "):
         refreshed_copy([CAN], given, "python")
 
 

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import EVERY
-from driveline.harness.base.errors import WiringError
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.limits import USUAL_LIMITS
-from driveline.harness.cosimulation.runs import run
-from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.loop.mapped_names import mappings, require_known
 from driveline.harness.loop.places import CONNECTIONS, NO_DAMPING, OFFERED, OPTIONAL, PLACES, PLANTS
 from driveline.harness.loop.settings import Settings, chosen_build, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import signals, simulate, start
+from fmuloop.errors import WiringError
+from fmuloop.experiment import Experiment
+from fmuloop.interface import Interface
+from fmuloop.limits import USUAL_LIMITS
+from fmuloop.runs import run
+from fmuloop.wiring import fit
 from tests.foreign import RELAY, build_relay, tampered
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=1.2)

@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 
 from driveline.fmus.building.builds import build_fmus
-from driveline.harness.base.errors import WiringError
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.arguments import ARGUMENTS
 from driveline.harness.loop.built_fmus import frequency_of_plant
 from driveline.harness.loop.given_parameters import built_with
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Changes, Settings, own_frequency, settings
+from fmuloop.errors import WiringError
+from fmuloop.system import Scheme
 from tests import ROOT
 from tests.foreign import build_car
 

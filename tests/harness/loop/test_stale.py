@@ -6,15 +6,15 @@ from shutil import copytree
 
 import pytest
 
-from driveline.fmus import origin
-from driveline.harness.base.collected_warnings import warn_once
 from driveline.harness.commands.cli import main
 from driveline.harness.loop import built_fmus, fmu_cache
 from driveline.harness.loop.places import BUILDS, PLANTS
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
+from fmublocks import origin
+from fmuloop.many_runs import run_many
+from toolground.collected_warnings import warn_once
 
 RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
 
@@ -128,7 +128,7 @@ def test_without_a_compiler_the_python_builds_run_and_it_is_said_why(
 @pytest.mark.parametrize("workers", [1, 2])
 def test_runs_from_python_name_them_once(stale: Path, caplog: pytest.LogCaptureFixture, workers: int) -> None:
     def end(k_d: float) -> float:
-        from driveline.fmus import origin  # in a worker everything is imported anew
+        from fmublocks import origin  # in a worker everything is imported anew
 
         origin.sources_digest = lambda: "others"
         short = replace(MANOEUVRES["tipin15"], duration=0.01)

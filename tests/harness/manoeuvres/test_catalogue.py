@@ -9,7 +9,7 @@ from docs.studies import town_drive
 from driveline.harness.manoeuvres.catalogue import COMPARED, EVERYDAY, MANOEUVRES, TOWN_DRIVE, USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.prbs import shift_register
 from driveline.harness.manoeuvres.signals import FlatSine, Held, lines
-from driveline.harness.recordings.drive import read_drive
+from driverecords.drive import read_drive
 
 
 @pytest.mark.parametrize(

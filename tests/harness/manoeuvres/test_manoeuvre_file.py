@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.manoeuvres.manoeuvre_file import read_manoeuvre
 from driveline.harness.manoeuvres.parts import KINDS
 from tests import ROOT
+from toolground.errors import UserError
 
 EXAMPLE = ROOT / "examples" / "manoeuvres" / "overtaking.toml"
 PAGE = (ROOT / "docs" / "manoeuvres.md").read_text(encoding="utf-8")
@@ -50,7 +50,7 @@ def test_the_lines_of_python_on_the_page_print_what_they_say(both_built, capsys)
 def test_a_file_needs_a_duration_alone_and_is_not_too_long(tmp_path):
     manoeuvre = read(tmp_path, "duration = 2")
     assert (manoeuvre.v_0, manoeuvre.T_0, manoeuvre.dT) == (0.0, 0.0, None)
-    with pytest.raises(DrivelineError, match=r"1\.2 MB is too long; at most 1 MB"):
+    with pytest.raises(UserError, match=r"1\.2 MB is too long; at most 1 MB"):
         read(tmp_path, "duration = 5\n" + "# " * 600_000)
 
 
@@ -98,7 +98,7 @@ def test_a_file_needs_a_duration_alone_and_is_not_too_long(tmp_path):
     ],
 )
 def test_what_is_wrong_is_said_in_one_line_with_file_key_and_value(tmp_path, text, message):
-    with pytest.raises(DrivelineError, match=message) as refusal:
+    with pytest.raises(UserError, match=message) as refusal:
         read(tmp_path, text)
     assert str(refusal.value).startswith(f"{tmp_path / 'mine.toml'}: ")
     assert str(refusal.value).isprintable()
@@ -130,5 +130,5 @@ def test_a_table_is_read_as_straight_lines_with_jumps_and_gaps(tmp_path):
     ],
 )
 def test_a_bad_table_is_refused(tmp_path, rows, message):
-    with pytest.raises(DrivelineError, match=message):
+    with pytest.raises(UserError, match=message):
         read(tmp_path, f"Time [s],T_driver [Nm]\n{rows}", "mine.csv")

@@ -21,7 +21,7 @@ from driveline.harness.manoeuvres.speed_following import (
     needed_force,
 )
 from driveline.harness.metrics.spectrum import band_rms
-from driveline.harness.recordings.drive import read_drive
+from driverecords.drive import read_drive
 
 LOAD = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
 RESISTANCE = 1450.0 * 9.81 * 0.012

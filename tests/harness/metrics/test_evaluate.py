@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from driveline.harness.cosimulation.results import Ended, Results
 from driveline.harness.loop.places import T_S
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.signals import lines
@@ -21,6 +20,7 @@ from driveline.harness.metrics.oscillation import amplitude
 from driveline.harness.metrics.run_metrics import Metrics
 from driveline.harness.metrics.spectrum import band_rms, own_band
 from driveline.harness.metrics.step_response import response
+from fmuloop.results import Ended, Results
 
 
 def run(duration=6.0, interval=1e-3, **signals):

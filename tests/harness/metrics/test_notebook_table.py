@@ -7,10 +7,10 @@ from typing import Annotated, NamedTuple
 
 import pytest
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.metrics.declaration import Column, Metric, declared
 from driveline.harness.metrics.notebook_table import frame
 from driveline.harness.metrics.run_metrics import Metrics, RideMetrics
+from toolground.errors import UserError
 
 RIDE = RideMetrics(2.0, math.nan, 4.0, 0.123456, {"gear_damage": "counts <nothing>"})
 
@@ -47,7 +47,7 @@ def test_a_frame_has_a_row_a_run_with_units_and_fields_as_levels_of_the_index() 
     assert found.index.names == ["k_d", "phi_B"]
     assert found["jerk_rms"].unstack("phi_B").shape == (2, 3)
     assert frame({Case(1.0, 0.1): RIDE}).index.names == ["k_d", "phi_B"]
-    with pytest.raises(DrivelineError, match="there are no runs"):
+    with pytest.raises(UserError, match="there are no runs"):
         frame({})
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.measurement import Measurement, read_measurement
+from driverecords.measurement import Measurement, read_measurement
 from tests.harness.recordings.car import RADIUS, RATIO
 
 Write = Callable[[Mapping[str, np.ndarray]], Path]

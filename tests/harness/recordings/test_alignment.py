@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.alignment import aligned
-from driveline.harness.recordings.channels import Channel
-from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.source import RecordingError
+from driverecords.alignment import aligned
+from driverecords.channels import Channel
+from driverecords.file_units import FileUnit
+from driverecords.source import RecordingError
 
 
 def channel(quantity: str, time: np.ndarray, values: np.ndarray) -> Channel:

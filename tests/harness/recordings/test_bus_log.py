@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import MissingExtra
-from driveline.harness.recordings.channels import Channels
-from driveline.harness.recordings.clock_times import read_clock
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.format_detection import opened
-from driveline.harness.recordings.source import RecordingError
-from driveline.harness.recordings.time_base import Cut
+from driverecords.channels import Channels
+from driverecords.clock_times import read_clock
+from driverecords.drive import read_drive
+from driverecords.format_detection import opened
+from driverecords.source import RecordingError
+from driverecords.time_base import Cut
 from tests.together import together
+from toolground.errors import MissingExtra
 
 pytestmark = pytest.mark.usefixtures("read_here")
 

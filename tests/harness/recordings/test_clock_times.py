@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from driveline.harness.recordings.clock_times import is_clock_time, seconds
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.source import RecordingError
+from driverecords.clock_times import is_clock_time, seconds
+from driverecords.drive import read_drive
+from driverecords.source import RecordingError
 
 FORMS: dict[str, Callable[[datetime], str]] = {
     "ISO 8601": lambda at: at.isoformat(timespec="milliseconds"),

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from driveline.harness.commands.recorded import instant
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.measurement import PIECE, read_measurement
-from driveline.harness.recordings.source import RecordingError
-from driveline.harness.recordings.time_base import Cut
+from driverecords.drive import read_drive
+from driverecords.measurement import PIECE, read_measurement
+from driverecords.source import RecordingError
+from driverecords.time_base import Cut
 from tests.harness.recordings.car import RADIUS, RATIO, drive
 from tests.harness.recordings.conftest import Write
 from tests.harness.recordings.test_bus_log import CLASSIC, DBC, asc
@@ -91,7 +91,7 @@ def test_a_log_of_a_bus_and_an_mdf_file_know_times_of_day(tmp_path: Path) -> Non
     path, database = tmp_path / "log.asc", tmp_path / "bus.dbc"
     path.write_text(asc(CLASSIC), encoding="utf-8")
     database.write_text(DBC, encoding="ascii")
-    from driveline.harness.recordings.channels import Channels
+    from driverecords.channels import Channels
 
     part = Channels(path, databases=[database], cut=Cut(instant("10:15:31"), instant("10:15:31.2"))).read("T_mot")
     assert part["T_mot"].time.tolist() == pytest.approx(np.arange(50, 71) * 0.01)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from driveline.harness.recordings.dialect import Dialect, dialect_of
+from driverecords.dialect import Dialect, dialect_of
 
 NAMES = ("Time", "Velocity", "Elevation", "Torque")
 ROWS = "\n".join(f"{k};36.5;500;{k}" for k in range(6)) + "\n"

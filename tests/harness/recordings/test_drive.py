@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track, torque_limit
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.source import RecordingError
+from driverecords.drive import read_drive
+from driverecords.source import RecordingError
+from fmuloop.interface import Interface
 from tests import ROOT
 
 HEADER = "Time [s],Velocity [km/h],Elevation [m],Throttle [%],Motor Torque [Nm]"

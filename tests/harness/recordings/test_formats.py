@@ -9,12 +9,12 @@ from zipfile import ZipFile
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import MissingExtra
-from driveline.harness.recordings.channels import Channels
-from driveline.harness.recordings.drive import Drive, read_drive
-from driveline.harness.recordings.source import RecordingError
+from driverecords.channels import Channels
+from driverecords.drive import Drive, read_drive
+from driverecords.source import RecordingError
 from tests.harness.recordings.variants import TEXTS, Columns, recording, write_arrow, write_mdf
 from tests.together import together
+from toolground.errors import MissingExtra
 
 pytestmark = pytest.mark.usefixtures("read_here")
 

@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.fmus import file_limits as limits
-from driveline.harness.base.interruption import stoppable
-from driveline.harness.recordings import bounded_reading, text_file
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.source import RecordingError
+from driverecords import bounded_reading, text_file
+from driverecords.drive import read_drive
+from driverecords.source import RecordingError
 from tests.harness.recordings.test_bus_log import drive as frames
 from tests.harness.recordings.test_bus_log import write as write_log
 from tests.harness.recordings.variants import TEXTS, recording, table, write_arrow, write_mdf
 from tests.together import together
+from toolground import file_limits as limits
+from toolground.interruption import stoppable
 
 HEADING = "Time [s],Velocity [km/h],Motor Torque [Nm]\n"
 

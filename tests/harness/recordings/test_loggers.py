@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.cells import is_missing
-from driveline.harness.recordings.channel_rules import of_channels
-from driveline.harness.recordings.channels import Channels
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.source import RecordingError
-from driveline.harness.recordings.time_base import Cut
+from driverecords.cells import is_missing
+from driverecords.channel_rules import of_channels
+from driverecords.channels import Channels
+from driverecords.drive import read_drive
+from driverecords.source import RecordingError
+from driverecords.time_base import Cut
 from tests.harness.recordings.logger_texts import HABITS, TIME, T, V
 from tests.together import together
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.measurement import Measurement, read_measurement
-from driveline.harness.recordings.source import RecordingError
+from driverecords.measurement import Measurement, read_measurement
+from driverecords.source import RecordingError
 from tests.harness.recordings.car import RADIUS, RATIO, drive
 from tests.harness.recordings.conftest import Write
 

@@ -5,15 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.fmus.unit_conversion import factor
-from driveline.harness.recordings.channels import Channels
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.headings import split, without_brackets
-from driveline.harness.recordings.measurement import read_measurement
-from driveline.harness.recordings.quantities import QUANTITIES, aliases
-from driveline.harness.recordings.source import RecordingError
+from driverecords.channels import Channels
+from driverecords.drive import read_drive
+from driverecords.headings import split, without_brackets
+from driverecords.measurement import read_measurement
+from driverecords.quantities import QUANTITIES, aliases
+from driverecords.source import RecordingError
 from tests.harness.recordings.car import RADIUS, RATIO, drive
 from tests.harness.recordings.conftest import Write
+from toolground.unit_conversion import factor
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,8 @@ import pytest
 from docs.studies.town_drive import CAR
 from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.road_load import RoadLoad
-from driveline.harness.recordings import channel_rules, plausibility
-from driveline.harness.recordings.channel_rules import (
+from driverecords import channel_rules, plausibility
+from driverecords.channel_rules import (
     ACCELERATION,
     AROUND,
     BRIEF,
@@ -31,13 +31,13 @@ from driveline.harness.recordings.channel_rules import (
     spikes,
     uncertain,
 )
-from driveline.harness.recordings.channels import Channel, Lack
-from driveline.harness.recordings.drive import Drive, read_drive
-from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.findings import MOST_MARKED, Finding, Rule
-from driveline.harness.recordings.force_balance import EVERY, LARGEST, SMALLEST, Balance, Forces, balance, forces
-from driveline.harness.recordings.missing_values import ENDS, NINES, RESERVED, SCALED, coded, is_code
-from driveline.harness.recordings.plausibility import (
+from driverecords.channels import Channel, Lack
+from driverecords.drive import Drive, read_drive
+from driverecords.file_units import FileUnit
+from driverecords.findings import MOST_MARKED, Finding, Rule
+from driverecords.force_balance import EVERY, LARGEST, SMALLEST, Balance, Forces, balance, forces
+from driverecords.missing_values import ENDS, NINES, RESERVED, SCALED, coded, is_code
+from driverecords.plausibility import (
     BEYOND,
     FOLLOWED,
     MS,
@@ -51,7 +51,7 @@ from driveline.harness.recordings.plausibility import (
     of_drive,
     too_short,
 )
-from driveline.harness.recordings.source import RecordingError
+from driverecords.source import RecordingError
 from tests import ROOT
 from tests.together import together
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import root_scalar
 
-from driveline.harness.recordings.relations import FAST, LINK, OPPOSED, OTHERS, RATIO, SIZE, SLOW, band, links, low
-from driveline.harness.recordings.source import RecordingError
+from driverecords.relations import FAST, LINK, OPPOSED, OTHERS, RATIO, SIZE, SLOW, band, links, low
+from driverecords.source import RecordingError
 from tests.harness.recordings.car import drive
 from tests.harness.recordings.conftest import Read
 
@@ -22,7 +22,7 @@ def test_exchanged_channels_are_named(read: Read, names: tuple[str, str]) -> Non
 def test_channels_are_only_exchanged_if_it_is_certain(read: Read, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a wide gap the teeth hit hard, and the motor feels what the wheels feel."""
     found = {("T_mot", "omega_1"): 0.4, ("T_load", "omega_1"): -0.99 * OTHERS}
-    monkeypatch.setattr("driveline.harness.recordings.relations.links", lambda *_: found)
+    monkeypatch.setattr("driverecords.relations.links", lambda *_: found)
     read(drive())
     found["T_load", "omega_1"] = -1.01 * OTHERS
     with pytest.raises(RecordingError, match=r"exchanged\?"):

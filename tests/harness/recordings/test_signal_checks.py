@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.channel_rules import CUT_OFF
-from driveline.harness.recordings.channels import Channel
-from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.quantities import QUANTITIES
-from driveline.harness.recordings.signal_checks import SHORTEST, check_signal
-from driveline.harness.recordings.source import RecordingError
+from driverecords.channel_rules import CUT_OFF
+from driverecords.channels import Channel
+from driverecords.file_units import FileUnit
+from driverecords.quantities import QUANTITIES
+from driverecords.signal_checks import SHORTEST, check_signal
+from driverecords.source import RecordingError
 from tests.harness.recordings.car import drive
 from tests.harness.recordings.conftest import Read
 

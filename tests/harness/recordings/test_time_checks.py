@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.recordings import channels
-from driveline.harness.recordings.channels import Channels
-from driveline.harness.recordings.quantities import QUANTITIES
-from driveline.harness.recordings.source import Column, RecordingError, Samples
-from driveline.harness.recordings.time_base import Break, clean_pieces, spread, time_breaks
+from driverecords import channels
+from driverecords.channels import Channels
+from driverecords.quantities import QUANTITIES
+from driverecords.source import Column, RecordingError, Samples
+from driverecords.time_base import Break, clean_pieces, spread, time_breaks
 
 JUST = 1e-6
 """How far from the longest step, as a share of it."""

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.simulation import case_archive
 from driveline.harness.simulation.case_archive import GOES_ON, Campaign, CaseArchive, Table, resumable
+from toolground.errors import UserError
 
 TABLE: Table[str, float] = Table(
     ["case", "answer"], lambda case, answer: [case, answer], lambda row: (row[0], float(row[1])), "a case and a number"
@@ -52,7 +52,7 @@ def test_answers_of_other_code_are_not_gone_on_with(path: Path, monkeypatch: pyt
     with begun(path) as made:
         made.archive["a"] = 1.0
     monkeypatch.setattr(case_archive, "digest_behind", lambda module: f"sha256:another of {module}")
-    with pytest.raises(DrivelineError, match=rf"code: sha256:\w+ there, sha256:another of {__name__} here\); give"):
+    with pytest.raises(UserError, match=rf"code: sha256:\w+ there, sha256:another of {__name__} here\); give"):
         begun(path).__enter__()
     assert CaseArchive(path, TABLE) == {"a": 1.0}
     with begun(path, replace=True) as made:
@@ -82,7 +82,7 @@ def test_lines_can_be_ordered_by_their_cases(path: Path) -> None:
 def test_a_file_of_something_else_is_refused_and_kept(path: Path, text: str, message: str) -> None:
     path.parent.mkdir()
     path.write_text(text)
-    with pytest.raises(DrivelineError, match=message):
+    with pytest.raises(UserError, match=message):
         CaseArchive(path, TABLE)
     assert path.read_text() == text
 
@@ -130,7 +130,7 @@ def test_another_campaign_is_refused_and_replaced_only_if_asked(
     with begun(path) as made:
         made.archive["a"] = 1.0
     before = {file.name: file.read_bytes() for file in path.parent.iterdir()}
-    with pytest.raises(DrivelineError, match=rf"answers\.csv is of another run \({message}\)"), begun(path, other):
+    with pytest.raises(UserError, match=rf"answers\.csv is of another run \({message}\)"), begun(path, other):
         pass
     assert {file.name: file.read_bytes() for file in path.parent.iterdir()} == before
     with begun(path, other, replace=True) as made:
@@ -141,11 +141,11 @@ def test_answers_of_another_version_are_not_continued(path: Path, monkeypatch: p
     with begun(path) as made:
         made.archive["a"] = 1.0
     monkeypatch.setattr(case_archive, "version", lambda name: "9.9" if name == "numpy" else "1.0")
-    with pytest.raises(DrivelineError, match=r"is of another run \(versions .* there, .* here\)"), begun(path):
+    with pytest.raises(UserError, match=r"is of another run \(versions .* there, .* here\)"), begun(path):
         pass
 
 
 def test_a_folder_in_the_place_of_the_archive_is_named(path: Path) -> None:
     path.mkdir(parents=True)
-    with pytest.raises(DrivelineError, match=r"answers\.csv is a folder"), begun(path):
+    with pytest.raises(UserError, match=r"answers\.csv is a folder"), begun(path):
         pass

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from driveline.fmus import origin
 from driveline.harness.simulation import code_behind
 from driveline.harness.simulation.code_behind import digest_behind, modules_behind
 from driveline.harness.studies.faults import fault_campaign
+from fmublocks import origin
 
 SOURCES = {
     "__init__.py": "",

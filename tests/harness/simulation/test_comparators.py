@@ -12,9 +12,6 @@ from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.parameter_files import read_parameters
 from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.names import COMPARATORS
-from driveline.fmus.python.packaging import build
-from driveline.harness.base.collected_warnings import warn_once
-from driveline.harness.base.errors import WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.loop import built_fmus, fmu_cache, places
 from driveline.harness.loop.places import NATIVE
@@ -22,10 +19,13 @@ from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
-from driveline.models.block.declaration import variables
 from driveline.models.controller import supervision
+from fmublocks.block.declaration import variables
+from fmublocks.python.packaging import build
+from fmuloop.errors import WiringError
 from tests.back_to_back import compare_block, random_inputs
 from tests.slow import slow
+from toolground.collected_warnings import warn_once
 
 TIPIN = MANOEUVRES["tipin15"]
 

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import SimulationError
 from driveline.harness.commands.cli import main
-from driveline.harness.cosimulation.results import Results
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate, start
+from fmuloop.errors import SimulationError
+from fmuloop.results import Results
 
 VEHICLE = "ValidationVehicle"
 

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.record import Arguments
 from driveline.harness.manoeuvres.prbs import FEEDBACK, binary_torque, shift_register
 from driveline.harness.manoeuvres.road_load import RoadLoad
-from driveline.harness.recordings.measurement import Measurement, read_measurement
 from driveline.harness.simulation.excitation_drive import MeasurementWheels, holding_slope, require_demand
 from driveline.harness.simulation.simulate import simulate
+from driverecords.measurement import Measurement, read_measurement
+from fmuloop.errors import WiringError
 
 CAR = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
 QUICK = ["record", "--duration", "2.5", "--quiet"]

@@ -13,8 +13,6 @@ from pathlib import Path
 import pytest
 
 from driveline.fmus.catalogue import SIGNAL_FAULTS as FMU
-from driveline.harness.base.errors import DrivelineError, MissingExtra, SimulationError
-from driveline.harness.cosimulation.runs import KeptLoops
 from driveline.harness.design.search.cost_evaluation import CostEvaluation
 from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tune import tune
@@ -23,11 +21,14 @@ from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.case_archive import CaseArchive, Table
-from driveline.harness.simulation.executors import dask_executor
-from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
 from driveline.harness.studies.faults.fault_campaign import campaign
 from driveline.harness.studies.faults.fault_injection import FaultRunner
+from fmuloop.errors import SimulationError
+from fmuloop.executors import dask_executor
+from fmuloop.many_runs import many, run_many
+from fmuloop.runs import KeptLoops
+from toolground.errors import MissingExtra, UserError
 
 dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")
@@ -50,7 +51,7 @@ def answers(function, cases, cluster):
 
 @pytest.mark.slow
 def test_a_worker_that_is_lost_takes_no_answer_with_it(cluster, tmp_path):
-    from driveline.harness.simulation.executors import MOST_UNDER_WAY
+    from fmuloop.executors import MOST_UNDER_WAY
 
     def run(case):
         with (tmp_path / f"{case}").open("a") as file:
@@ -123,13 +124,13 @@ def test_a_notebook_has_an_event_loop_of_its_own(cluster):
 def test_what_goes_wrong_on_a_worker_names_its_case(cluster):
     def fails(case):
         if case >= 2:
-            raise DrivelineError(f"no {case}")
+            raise UserError(f"no {case}")
         return case
 
     with dask_executor(cluster.scheduler_address) as executor, many(fails, executor=executor) as answered:
         found = answered(range(5))
         assert [next(found), next(found)] == [0, 1]
-        with pytest.raises(DrivelineError, match="case 2: no 2"):
+        with pytest.raises(UserError, match="case 2: no 2"):
             next(found)
 
 
@@ -157,16 +158,16 @@ def test_a_case_that_ends_its_workers_is_named(cluster, monkeypatch):
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense", "foo://here:80", ""])
 def test_no_scheduler_is_one_line(address, monkeypatch):
-    monkeypatch.setattr("driveline.harness.simulation.executors.TIMEOUT", 0.3)
-    with pytest.raises(DrivelineError, match=f"^no Dask scheduler answers at '{address}'(: | within 0.3 s$)"):
+    monkeypatch.setattr("fmuloop.executors.TIMEOUT", 0.3)
+    with pytest.raises(UserError, match=f"^no Dask scheduler answers at '{address}'(: | within 0.3 s$)"):
         dask_executor(address).__enter__()
 
 
 def test_what_takes_the_connection_and_says_nothing_is_no_scheduler(monkeypatch):
-    monkeypatch.setattr("driveline.harness.simulation.executors.TIMEOUT", 0.3)
+    monkeypatch.setattr("fmuloop.executors.TIMEOUT", 0.3)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
-        with pytest.raises(DrivelineError, match=f"^no Dask scheduler answers at '{address}' within 0.3 s$"):
+        with pytest.raises(UserError, match=f"^no Dask scheduler answers at '{address}' within 0.3 s$"):
             dask_executor(address).__enter__()
 
 

@@ -14,15 +14,16 @@ from threading import Lock
 
 import pytest
 
-from driveline.harness.base.atomic_files import complete
-from driveline.harness.base.collected_warnings import warn_once
-from driveline.harness.base.errors import DrivelineError, SimulationError
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.errors import SimulationError
+from fmuloop.many_runs import many, run_many
+from fmuloop.system import Scheme
 from tests import ROOT
 from tests.slow import slow
+from toolground.atomic_files import complete
+from toolground.collected_warnings import warn_once
+from toolground.errors import UserError
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=0.1)
 
@@ -40,7 +41,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation.many_runs import run_many
+from fmuloop.many_runs import run_many
 from driveline.harness.simulation.simulate import simulate
 
 
@@ -101,7 +102,7 @@ def test_progress_is_told_of_every_case(monkeypatch):
         told.append((total, label))
         yield told.append
 
-    monkeypatch.setattr("driveline.harness.simulation.many_runs.progress", progress)
+    monkeypatch.setattr("fmuloop.many_runs.progress", progress)
     run_many(abs, [-1, -2, -3], workers=1, label="counting")
     assert told == [(3, "counting"), 0, 1, 2, 3]
 
@@ -305,7 +306,7 @@ def test_a_process_that_ends_beside_an_error_is_not_that_of_the_case_with_the_er
 
 @pytest.mark.parametrize("batch", [0, 1.5])
 def test_a_size_of_batches_that_is_none_is_refused(batch):
-    with pytest.raises(DrivelineError, match="batch = "):
+    with pytest.raises(UserError, match="batch = "):
         run_many(str, [1], batch=batch)
 
 
@@ -314,7 +315,7 @@ import sys, tempfile
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Lock
-from driveline.harness.simulation.many_runs import run_many
+from fmuloop.many_runs import run_many
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 
@@ -347,7 +348,7 @@ def test_no_guard_is_needed(native, tmp_path, how):
 
 @pytest.mark.parametrize("workers", [0, -1, 1.5])
 def test_a_number_of_workers_that_is_none_is_refused(workers):
-    with pytest.raises(DrivelineError, match="workers = "):
+    with pytest.raises(UserError, match="workers = "):
         run_many(str, [1], workers=workers)
 
 
@@ -392,7 +393,7 @@ import os
 import signal
 from time import sleep
 
-from driveline.harness.simulation.many_runs import run_many
+from fmuloop.many_runs import run_many
 
 
 def case(number):

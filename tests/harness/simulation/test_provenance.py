@@ -15,15 +15,15 @@ from zipfile import ZipFile
 import pytest
 from fmpy.util import read_csv
 
-from driveline.fmus.origin import ENTRY
-from driveline.harness.base.atomic_files import alone
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.jobs import distinguishing
-from driveline.harness.cosimulation.interface import Interface
 from driveline.harness.loop.settings import Settings
 from driveline.harness.simulation import provenance, simulate
 from driveline.harness.simulation.provenance import require_same_run
+from fmublocks.origin import ENTRY
+from fmuloop.interface import Interface
+from toolground.atomic_files import alone
+from toolground.errors import UserError
 
 RUN = ["simulate", "--manoeuvre", "prbs15", "--step", "0.002", "--quiet"]
 NAME = "TwoMassDriveline_prbs15_DampingController"
@@ -231,11 +231,11 @@ def test_there_are_no_digests_of_fmus_of_ones_own_where_there_are_none(both_buil
     (tmp_path / "table.md").touch()
     for before, refused in ((same | {"digests": {}}, False), (same | {"digests": {"plant": "sha256:0"}}, True)):
         (tmp_path / "compare.json").write_text(json.dumps({"run": before}), encoding="utf-8")
-        with pytest.raises(DrivelineError, match="digests") if refused else nullcontext():
+        with pytest.raises(UserError, match="digests") if refused else nullcontext():
             require_same_run(tmp_path / "compare.json", same, [tmp_path / "table.md"])
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt, DrivelineError])
+@pytest.mark.parametrize("error", [KeyboardInterrupt, UserError])
 def test_a_run_that_comes_to_nothing_leaves_no_folder_of_its_own(error: type[BaseException], tmp_path: Path) -> None:
     here, new = tmp_path / "here", tmp_path / "here" / "new"
     here.mkdir()
@@ -258,11 +258,11 @@ def test_a_comparison_is_not_replaced_by_another(tmp_path: Path) -> None:
     record, table = tmp_path / "compare.json", tmp_path / "table.md"
     require_same_run(record, {"seed": 1}, [table])
     table.touch()
-    with pytest.raises(DrivelineError, match="does not tell"):
+    with pytest.raises(UserError, match="does not tell"):
         require_same_run(record, {"seed": 1}, [table])
     record.write_text('{"run": {"seed": 1}}', encoding="utf-8")
     require_same_run(record, {"seed": 1}, [table])
-    with pytest.raises(DrivelineError, match=r"table\.md is of another run \(seed: 1 there, 2 here\)"):
+    with pytest.raises(UserError, match=r"table\.md is of another run \(seed: 1 there, 2 here\)"):
         require_same_run(record, {"seed": 2}, [table])
 
 
@@ -278,5 +278,5 @@ def test_a_whole_car_that_is_new_or_gone_is_named_without_all_that_it_has(
     record, table = tmp_path / "compare.json", tmp_path / "table.md"
     table.touch()
     record.write_text(json.dumps({"run": runs[0]}), encoding="utf-8")
-    with pytest.raises(DrivelineError, match=rf"another run \({message}\)"):
+    with pytest.raises(UserError, match=rf"another run \({message}\)"):
         require_same_run(record, runs[1], [table])

@@ -12,14 +12,14 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
-from driveline.fmus.lanes_here import lanes_here
-from driveline.harness.base.errors import SimulationError, WiringError
-from driveline.harness.cosimulation.master import Loop
 from driveline.harness.loop.lane_libraries import _library
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
-from driveline.harness.simulation import many_runs, side_by_side
-from driveline.harness.simulation.many_runs import many, run_many
 from driveline.harness.simulation.simulate import simulate
+from fmuloop import many_runs, side_by_side
+from fmuloop.errors import SimulationError, WiringError
+from fmuloop.many_runs import many, run_many
+from fmuloop.master import Loop
+from toolground.lanes_here import lanes_here
 
 TIPIN = replace(MANOEUVRES["tipin15"], duration=0.2)
 

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.harness.base.collected_warnings import warn_once
-from driveline.harness.base.errors import WiringError
-from driveline.harness.cosimulation import experiment
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.signals import lines
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.simulate import simulate
+from fmuloop import experiment
+from fmuloop.errors import WiringError
+from toolground.collected_warnings import warn_once
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=0.01)
 

@@ -21,12 +21,9 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 
 import driveline
-from driveline.harness.base.plain_text import printed
-from driveline.harness.cosimulation.results import Results
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.step_response import SETTLED, response
-from driveline.harness.recordings.file_units import FileUnit
 from driveline.harness.views import figure_style, replay_figure
 from driveline.harness.views.annotations import BAND, GAP, gap
 from driveline.harness.views.drive_figure import AROUND, plot_drive, reversal
@@ -35,6 +32,9 @@ from driveline.harness.views.figure_style import titled
 from driveline.harness.views.replay_figure import PIECE, plot_replay, roughest
 from driveline.harness.views.run_figure import plot_run
 from driveline.harness.views.step_figure import plot_step
+from driverecords.file_units import FileUnit
+from fmuloop.results import Results
+from toolground.plain_text import printed
 
 TIPIN, DRIVE = MANOEUVRES["tipin15"], MANOEUVRES["drive"]
 OPEN = (1.010, 1.030)

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from driveline.harness.recordings.channel_rules import SPIKED
-from driveline.harness.recordings.channels import Channel
-from driveline.harness.recordings.file_units import FileUnit
-from driveline.harness.recordings.findings import Finding, at_samples
-from driveline.harness.recordings.plausibility import RATE
 from driveline.harness.views.panels import Points
 from driveline.harness.views.recording_view import _parts
+from driverecords.channel_rules import SPIKED
+from driverecords.channels import Channel
+from driverecords.file_units import FileUnit
+from driverecords.findings import Finding, at_samples
+from driverecords.plausibility import RATE
 
 
 def test_each_sample_that_is_odd_is_marked_in_the_units_of_the_file() -> None:

@@ -12,8 +12,6 @@ import pytest
 from rich.console import Console
 from rich.table import Table
 
-from driveline.harness.base.atomic_files import complete, remove, write_text
-from driveline.harness.base.plain_text import reason
 from driveline.harness.commands.settings import dampings
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics, RideMetrics
@@ -28,6 +26,8 @@ from driveline.harness.views.metrics_table import (
     write_metrics,
 )
 from driveline.harness.views.terminal import plain_table, print_table, rides_reasons, rides_table, runs_table
+from toolground.atomic_files import complete, remove, write_text
+from toolground.plain_text import reason
 
 
 def metrics(absent=None, **values):

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from fmpy.util import read_csv
 
-from driveline.harness.base.errors import MissingExtra
-from driveline.harness.cosimulation.results import Results
-from driveline.harness.recordings.channels import Channels
-from driveline.harness.recordings.format_detection import opened
 from driveline.harness.views import signals_file
 from driveline.harness.views.signals_file import FORMATS, require_format, signals_path, write_signals
+from driverecords.channels import Channels
+from driverecords.format_detection import opened
+from fmuloop.results import Results
+from toolground.errors import MissingExtra
 
 UNITS = {"time": "s", "plant.v": "m/s", "plant.T_gear": "N.m", "controller.T_driver": "N.m", "plant.phi": "rad"}
 

@@ -7,8 +7,8 @@ from typing import Annotated, Any, NamedTuple
 import pytest
 
 from driveline.models import two_mass_driveline, validation_vehicle
-from driveline.models.block.declaration import Enumeration, Real, merged, variables
-from driveline.models.block.types import Block
+from fmublocks.block.declaration import Enumeration, Real, merged, variables
+from fmublocks.block.types import Block
 from tests.models.block.test_operators import BLOCKS, every_block
 
 

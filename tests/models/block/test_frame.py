@@ -2,8 +2,8 @@
 
 import pytest
 
-from driveline.models.block.frame import Content, Layout, count, layout
 from driveline.models.wheel_speed_can import Parameters
+from fmublocks.block.frame import Content, Layout, count, layout
 
 P = Parameters()
 SPEED = Content("Speed", "v", "km/h", bits=4, resolution=lambda p: 0.5, factor=lambda p: 3.6, largest=lambda p: 7.5)

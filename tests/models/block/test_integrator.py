@@ -15,11 +15,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from driveline.models import two_mass_driveline as driveline
-from driveline.models.block.declaration import Real
-from driveline.models.block.implicit import NotIntegrable
-from driveline.models.block.integrator import Integrator, TooMuchWork
-from driveline.models.block.operators import maximum, where
-from driveline.models.block.types import ContinuousBlock, no_event_indicators
+from fmublocks.block.declaration import Real
+from fmublocks.block.implicit import NotIntegrable
+from fmublocks.block.integrator import Integrator, TooMuchWork
+from fmublocks.block.operators import maximum, where
+from fmublocks.block.types import ContinuousBlock, no_event_indicators
 from tests.models.exact_driveline import ExactDriveline
 
 P = driveline.Parameters(recorded_load=True)
@@ -44,7 +44,7 @@ LITTLE_WORK = 20
 @pytest.fixture
 def hurried(monkeypatch: pytest.MonkeyPatch) -> MakeIntegrator:
     """Makes integrators that are allowed LITTLE_WORK."""
-    monkeypatch.setattr("driveline.models.block.integrator.MOST_WORK", LITTLE_WORK)
+    monkeypatch.setattr("fmublocks.block.integrator.MOST_WORK", LITTLE_WORK)
     return Integrator
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from driveline.models.block.noise import M, normals, uniform
+from fmublocks.block.noise import M, normals, uniform
 
 seeds = st.integers(0, 1_000_000)
 streams = st.integers(0, 60).map(float)

@@ -14,7 +14,7 @@ from driveline.models import (
     validation_vehicle,
     wheel_speed_can,
 )
-from driveline.models.block import operators
+from fmublocks.block import operators
 
 BLOCKS = [
     model.BLOCK

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from driveline.models.block.rodas import GAMMA, A, C, D, G
+from fmublocks.block.rodas import GAMMA, A, C, D, G
 
 
 def square(rows: tuple[tuple[float, ...], ...]) -> np.ndarray:

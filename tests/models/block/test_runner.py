@@ -12,10 +12,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from driveline.models import two_mass_driveline
-from driveline.models.block.declaration import Real
-from driveline.models.block.integrator import Integrator
-from driveline.models.block.runner import TICK_TOLERANCE, Runner, runner
-from driveline.models.block.types import Block, SampledBlock
+from fmublocks.block.declaration import Real
+from fmublocks.block.integrator import Integrator
+from fmublocks.block.runner import TICK_TOLERANCE, Runner, runner
+from fmublocks.block.types import Block, SampledBlock
 from tests.models.block.test_operators import every_block
 
 

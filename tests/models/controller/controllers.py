@@ -9,14 +9,14 @@ import pytest
 from hypothesis import strategies as st
 
 from driveline.models import damping_controller
-from driveline.models.block.declaration import Real
-from driveline.models.block.types import SampledBlock
 from driveline.models.comparators import measured_speeds
 from driveline.models.controller import T_S
 from driveline.models.controller.damping_law import washed_out
 from driveline.models.controller.interfaces import Addition, Motion
 from driveline.models.controller.supervised_controller import supervised
 from driveline.models.controller.supervision import Input, State
+from fmublocks.block.declaration import Real
+from fmublocks.block.types import SampledBlock
 
 OURS = damping_controller.BLOCK
 

@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from driveline.models import damping_controller
-from driveline.models.block.declaration import variables
 from driveline.models.controller import T_S as SAMPLE
 from driveline.models.controller import damping_law as law
 from driveline.models.controller.damping_law import LEAST_DISTANCE, LawState
 from driveline.models.controller.interfaces import Addition, Motion
+from fmublocks.block.declaration import variables
 from tests.models.controller.controllers import above, each_side
 
 P = damping_controller.BLOCK.Parameters(

@@ -11,9 +11,9 @@ import pytest
 from docs.studies import monolithic
 from driveline.harness.metrics.spectrum import band_rms
 from driveline.models import two_mass_driveline, validation_vehicle
-from driveline.models.block.types import ContinuousBlock
 from driveline.models.controller.causes import WRONG_LAUNCH
 from driveline.models.controller.supervision import FALLBACK
+from fmublocks.block.types import ContinuousBlock
 from tests.slow import slow
 
 V_0 = 15.0

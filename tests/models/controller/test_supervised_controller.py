@@ -5,14 +5,14 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from driveline.fmus.native.trace import leaves, trace
-from driveline.models.block.declaration import variables
 from driveline.models.comparators import measured_speeds, speed_washout
 from driveline.models.comparators.speed_washout import Washout
 from driveline.models.controller import T_S, causes, damping_law, supervision, torque_estimator, torque_loop
 from driveline.models.controller.interfaces import Addition, Estimator, Law, Motion
 from driveline.models.controller.supervised_controller import supervised
 from driveline.models.controller.trust import TrustState
+from fmublocks.block.declaration import variables
+from fmublocks.native.trace import leaves, trace
 from tests.fmus.native.recorded import computed
 from tests.models.controller.controllers import OTHER, OURS, ROLLING, run, shaken
 

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from driveline.models.block.declaration import Enumeration, variables
-from driveline.models.block.types import SampledBlock
 from driveline.models.controller import T_S, causes, supervision, torque_loop
 from driveline.models.controller.supervision import FALLBACK, OFF, WITH_WHEEL_SPEED, WITHOUT_WHEEL_SPEED, Input, State
+from fmublocks.block.declaration import Enumeration, variables
+from fmublocks.block.types import SampledBlock
 from tests.models.controller.controllers import (
     ABSURD,
     OTHER,

@@ -6,11 +6,11 @@ from itertools import pairwise
 import pytest
 
 from driveline.models import damping_controller
-from driveline.models.block.declaration import Real, variables
 from driveline.models.controller import T_S
 from driveline.models.controller import torque_estimator as estimator
 from driveline.models.controller.learned_gap import GapState
 from driveline.models.controller.torque_estimator import Estimate, EstimatorState
+from fmublocks.block.declaration import Real, variables
 from tests.models.controller.controllers import ROLLING
 
 BLOCK = damping_controller.BLOCK

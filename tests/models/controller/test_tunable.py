@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 
 from driveline.fmus.catalogue import EVERY
-from driveline.fmus.description.variables import interface
-from driveline.fmus.native.trace import leaves
-from driveline.models.block.types import SampledBlock
 from driveline.models.controller import T_S
 from driveline.models.controller.supervision import FALLBACK, Input
 from driveline.models.damping_controller import BLOCK
+from fmublocks.block.types import SampledBlock
+from fmublocks.description.variables import interface
+from fmublocks.native.trace import leaves
 from tests.models.controller.controllers import ROLLING
 
 CYCLE = 10

@@ -6,10 +6,10 @@ from itertools import islice, pairwise
 
 import pytest
 
-from driveline.harness.base.errors import MissingExtra
 from driveline.harness.design.search.controller_cost import Costs
 from driveline.harness.design.search.parameter_search import Evaluated, Search, best, front
 from driveline.harness.design.search.search_space import Searched, Space
+from toolground.errors import MissingExtra
 
 SPACE = Space((Searched("k", 2.0, 0.2, 10.0), Searched("T", 0.004, 0.0, 0.012)), {"L": 0.3})
 

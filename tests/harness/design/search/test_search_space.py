@@ -26,7 +26,7 @@ from driveline.harness.loop.places import PLACES, PLANTS, T_S
 from driveline.harness.manoeuvres.catalogue import COMPARED, USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES as CATALOGUE
 from driveline.harness.views.panels import Curve
-from driveline.models.block.declaration import Real, variables
+from fmublocks.block.declaration import Real, variables
 from tests import ROOT
 
 OURS = "DampingController"

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from driveline.harness.base.errors import DrivelineError, SimulationError
 from driveline.harness.design.search.controller_cost import Costs
 from driveline.harness.design.search.cost_evaluation import CostEvaluation
 from driveline.harness.design.search.parameter_search import Evaluated
@@ -15,6 +14,8 @@ from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
 from driveline.harness.loop.settings import Settings
 from driveline.harness.simulation.case_archive import CaseArchive
+from fmuloop.errors import SimulationError
+from toolground.errors import UserError
 
 OURS = space("DampingController", {})
 COUNT = 5
@@ -66,7 +67,7 @@ def test_costs_come_back_from_the_file_to_the_last_bit(tmp_path: Path) -> None:
 def test_a_file_that_is_none_of_a_search_is_refused(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "evaluations.csv"
     path.write_text(text)
-    with pytest.raises(DrivelineError, match=message):
+    with pytest.raises(UserError, match=message):
         CaseArchive(path, table(["k", "T"]))
 
 

@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 from driveline.fmus.building.parameter_files import read_vehicle
-from driveline.harness.base.errors import WiringError
 from driveline.harness.commands.cli import main
 from driveline.harness.exchange.bus.database import telegrams, write_dbc
 from driveline.models.motor_torque_loop import FRAMES
 from driveline.models.wheel_speed_can import FRAME, OMEGA_MAX, Parameters
+from fmuloop.errors import WiringError
 from tests import ROOT
 
 VAN = ROOT / "examples" / "cars" / "van.toml"

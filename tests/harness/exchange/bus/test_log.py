@@ -9,10 +9,10 @@ import pytest
 from driveline.harness.commands.cli import main
 from driveline.harness.exchange.bus.database import telegrams, write_dbc
 from driveline.harness.exchange.bus.log import write_log
-from driveline.harness.recordings.channels import Channels
-from driveline.harness.recordings.drive import read_drive
-from driveline.harness.recordings.measurement import read_measurement
 from driveline.models.wheel_speed_can import FRAME, Parameters
+from driverecords.channels import Channels
+from driverecords.drive import read_drive
+from driverecords.measurement import read_measurement
 
 pytestmark = pytest.mark.usefixtures("read_here")
 

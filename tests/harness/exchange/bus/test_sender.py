@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.fmus.description.terminal import FOLDER, TERMINAL
 from driveline.harness.commands.cli import main
 from driveline.harness.exchange.bus.database import messages, telegrams
 from driveline.harness.exchange.bus.log import frames
 from driveline.models.wheel_speed_can import FRAME, Parameters
+from fmublocks.description.terminal import FOLDER, TERMINAL
 from tests.fmus.bus import Node, frame_in
 
 P = Parameters()

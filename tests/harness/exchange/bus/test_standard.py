@@ -18,10 +18,10 @@ import numpy as np
 import pytest
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
-from driveline.fmus.description.terminal import FOLDER
-from driveline.fmus.native.compiler import host_compiler
-from driveline.fmus.native.packaging import FMI_HEADERS
 from driveline.models.wheel_speed_can import FRAME
+from fmublocks.description.terminal import FOLDER
+from fmublocks.native.compiler import host_compiler
+from fmublocks.native.packaging import FMI_HEADERS
 from tests.fmus.bus import CONFIRM, Node, frame_in, operations
 
 STANDARD = Path(os.environ.get("FMI_LS_BUS", "."))

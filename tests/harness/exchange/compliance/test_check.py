@@ -10,27 +10,27 @@ from zipfile import ZipFile
 
 import pytest
 
-from driveline.fmus.building.builds import sender_builder
 from driveline.fmus.catalogue import FMUS
-from driveline.fmus.native.compiler import host_compiler
-from driveline.harness.base.errors import DrivelineError
-from driveline.harness.cosimulation.description import KINDS
-from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.limits import Limits
-from driveline.harness.cosimulation.unpacked_fmu import unpacked as opened
-from driveline.harness.exchange.compliance.behaviour_rules import BEHAVIOUR_RULES
-from driveline.harness.exchange.compliance.check import check
-from driveline.harness.exchange.compliance.claim_rules import CLAIM_RULES, EXCHANGE_CLAIM_RULES, STEPPING_CLAIM_RULES
-from driveline.harness.exchange.compliance.exchange_rules import EXCHANGE_RULES
-from driveline.harness.exchange.compliance.junit import junit
-from driveline.harness.exchange.compliance.probe import initialized
-from driveline.harness.exchange.compliance.rule import Rule, Severity
 from driveline.harness.loop.places import PLANTS
+from fmublocks.builds import sender_builder
+from fmublocks.native.compiler import host_compiler
+from fmucheck.behaviour_rules import BEHAVIOUR_RULES
+from fmucheck.check import check
+from fmucheck.claim_rules import CLAIM_RULES, EXCHANGE_CLAIM_RULES, STEPPING_CLAIM_RULES
+from fmucheck.exchange_rules import EXCHANGE_RULES
+from fmucheck.junit import junit
+from fmucheck.probe import initialized
+from fmucheck.rule import Rule, Severity
+from fmuloop.description import KINDS
+from fmuloop.interface import Interface
+from fmuloop.limits import Limits
+from fmuloop.unpacked_fmu import unpacked as opened
 from tests.foreign import RELAY, build_relay, tampered
 from tests.foreign.archives import HOSTILE
 from tests.foreign.stranger import build_stranger, in_words_of
 from tests.skipping import skipped_if_impossible
 from tests.slow import slow
+from toolground.errors import UserError
 
 PLANT = f"{PLANTS[0]}.fmu"
 
@@ -235,10 +235,10 @@ def test_what_cannot_be_read_or_tried_is_a_finding(tmp_path, monkeypatch):
     path = tmp_path / "text.fmu"
     path.write_text("no archive")
     assert len(findings(path)) == 1
-    with pytest.raises(DrivelineError, match="there is no FMU"):
+    with pytest.raises(UserError, match="there is no FMU"):
         findings(tmp_path / "none.fmu")
     rule = Rule("odd", Severity.ERROR, "an error that nobody foresees", problems=os.listdir)
-    monkeypatch.setattr("driveline.harness.exchange.compliance.check.QUICK_RULES", (rule,))
+    monkeypatch.setattr("fmucheck.check.QUICK_RULES", (rule,))
     severity, text = broken(build_stranger(tmp_path), quick=True)["odd"]
     assert (severity, text.partition(",")[0]) == ("error", "cannot be tried: TypeError: listdir: path should be string")
 

@@ -7,18 +7,18 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.base.errors import WiringError
-from driveline.harness.cosimulation.description import KINDS
-from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.limits import Limits
-from driveline.harness.cosimulation.unpacked_fmu import unpacked
-from driveline.harness.exchange.compliance import exchange_host
-from driveline.harness.exchange.compliance.check import check
-from driveline.harness.exchange.compliance.claim_rules import CLAIM_RULES, EXCHANGE_CLAIM_RULES
-from driveline.harness.exchange.compliance.exchange_host import integrated
-from driveline.harness.exchange.compliance.exchange_rules import EXCHANGE_RULES
-from driveline.harness.exchange.compliance.host import Host
 from driveline.harness.loop.places import PLANTS
+from fmucheck import exchange_host
+from fmucheck.check import check
+from fmucheck.claim_rules import CLAIM_RULES, EXCHANGE_CLAIM_RULES
+from fmucheck.exchange_host import integrated
+from fmucheck.exchange_rules import EXCHANGE_RULES
+from fmucheck.host import Host
+from fmuloop.description import KINDS
+from fmuloop.errors import WiringError
+from fmuloop.interface import Interface
+from fmuloop.limits import Limits
+from fmuloop.unpacked_fmu import unpacked
 from tests.foreign import tampered
 from tests.foreign.oscillator import DESCRIPTION, WORDS_OF_FMI3, build_oscillator
 

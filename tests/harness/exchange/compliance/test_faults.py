@@ -5,7 +5,7 @@ from zipfile import ZipFile
 
 import pytest
 
-from driveline.harness.exchange.compliance.check import check
+from fmucheck.check import check
 from tests.foreign.oscillator import DESCRIPTION, DESCRIPTION_3, build_oscillator
 from tests.foreign.stranger import build_stranger
 

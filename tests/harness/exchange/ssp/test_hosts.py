@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from benchmarks.ssp_hosts import PRESENT, run_in
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.system import Scheme
 from tests.foreign import build_car
 
 STEPS = 1200

@@ -13,9 +13,7 @@ import pytest
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands.cli import main
-from driveline.harness.cosimulation.wiring import fit
 from driveline.harness.exchange.ssp.layout import BOXES, PLACES
 from driveline.harness.exchange.ssp.loop_with_source import SIGNALS, SOURCE, points, with_source
 from driveline.harness.loop.places import CONNECTIONS, PLANTS, STEP_SIZE
@@ -23,8 +21,10 @@ from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.signals import FlatSine, Held
 from driveline.models.manoeuvre import BLOCK, Input, State
+from fmuloop.wiring import fit
 from tests import ROOT
 from tests.foreign import build_car
+from toolground.errors import UserError
 
 SCHEMAS = {
     ".ssd": "SystemStructureDescription.xsd",
@@ -258,7 +258,7 @@ def test_what_the_source_cannot_make_is_refused(fmus, change, message) -> None:
     fitted = fit(with_source(loop(folder=fmus, build="native"), fmus / "native" / "Manoeuvre.fmu"))
     manoeuvre = MANOEUVRES["tipin15"]
     points(replace(manoeuvre, T_driver=held(400, 1.0, 2.0)), fitted)
-    with pytest.raises(DrivelineError, match=message):
+    with pytest.raises(UserError, match=message):
         points(replace(manoeuvre, **change), fitted)
 
 

@@ -10,9 +10,9 @@ from shutil import copy
 import pytest
 
 from benchmarks.ssp_hosts import PRESENT
-from driveline.harness.cosimulation.system import Scheme
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
+from fmuloop.system import Scheme
 from tests import ROOT
 
 SECTIONS = (ROOT / "docs" / "hosts.md").read_text(encoding="utf-8").split("\n## ")

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from driveline.fmus.target.image import require_packages
-from driveline.fmus.target.sources import CONTROLLERS
+from driveline.fmus.catalogue import CONTROLLERS
 from driveline.harness.exchange.target.controllers import Programs, programs
+from fmublocks.target.image import require_packages
 from tests.skipping import skipped_if_impossible
 
 

@@ -7,17 +7,17 @@ from typing import Any
 
 import pytest
 
-from driveline.fmus.description.variables import interface
-from driveline.fmus.target.image import a2l_description, symbols
-from driveline.fmus.target.link import Link
-from driveline.fmus.target.remote import Remote
-from driveline.fmus.target.sources import CONTROLLERS
+from driveline.fmus.catalogue import CONTROLLERS
 from driveline.harness.commands.cli import main
 from driveline.harness.exchange.target.controllers import Programs
 from driveline.models import motor_torque_loop, two_mass_driveline, wheel_speed_can
-from driveline.models.block.runner import runner
 from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK
+from fmublocks.block.runner import runner
+from fmublocks.description.variables import interface
+from fmublocks.target.image import a2l_description, symbols
+from fmublocks.target.link import Link
+from fmublocks.target.remote import Remote
 
 FMU = CONTROLLERS["DampingController"]
 MOTOR, CAN, PLANT = motor_torque_loop.BLOCK, wheel_speed_can.BLOCK, two_mass_driveline.BLOCK

@@ -9,20 +9,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from driveline.fmus.catalogue import FMUS
-from driveline.fmus.fmu import Fmu
-from driveline.fmus.native.compiler import CompilerError
-from driveline.fmus.native.statements import SINGLE
-from driveline.fmus.target.link import Answer, TargetError
-from driveline.fmus.target.sources import CONTROLLERS, target_sources
+from driveline.fmus.catalogue import CONTROLLERS, FMUS
 from driveline.harness.exchange.target import controllers, costs, record
 from driveline.harness.exchange.target.comparison import compare
 from driveline.harness.exchange.target.controllers import Programs, for_car, write_image
 from driveline.harness.exchange.target.costs import schedule
 from driveline.harness.exchange.target.offline_cases import Case
 from driveline.harness.loop.settings import Settings
-from driveline.models.block.declaration import variables
 from driveline.models.controller import T_S
+from fmublocks.block.declaration import variables
+from fmublocks.fmu import Fmu
+from fmublocks.native.compiler import CompilerError
+from fmublocks.native.statements import SINGLE
+from fmublocks.target.link import Answer, TargetError
+from fmublocks.target.sources import target_sources
 from tests.together import together
 
 

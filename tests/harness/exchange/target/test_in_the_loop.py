@@ -10,12 +10,7 @@ from threading import Thread
 import numpy as np
 import pytest
 
-from driveline.fmus.native.statements import SINGLE
-from driveline.fmus.target.image import build_on_target, target_image
-from driveline.fmus.target.link import Link, TargetError, emulated
-from driveline.fmus.target.sources import CONTROLLERS, target_sources
-from driveline.harness.base.errors import SimulationError
-from driveline.harness.cosimulation.system import Scheme
+from driveline.fmus.catalogue import CONTROLLERS
 from driveline.harness.exchange.target.comparison import responses
 from driveline.harness.exchange.target.controllers import Programs
 from driveline.harness.exchange.target.offline_cases import Case
@@ -24,6 +19,12 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import at_samples
 from driveline.harness.simulation.simulate import signals, simulate
 from driveline.models.damping_controller import BLOCK
+from fmublocks.native.statements import SINGLE
+from fmublocks.target.image import build_on_target, target_image
+from fmublocks.target.link import Link, TargetError, emulated
+from fmublocks.target.sources import target_sources
+from fmuloop.errors import SimulationError
+from fmuloop.system import Scheme
 
 TIPIN, LONG = MANOEUVRES["tipin15"], MANOEUVRES["drive"]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from driveline.fmus.target.sources import CONTROLLERS
+from driveline.fmus.catalogue import CONTROLLERS
 from driveline.harness.exchange.target.comparison import Comparison, InLoop, compare, responses
 from driveline.harness.exchange.target.controllers import Programs, programs
 from driveline.harness.exchange.target.costs import Schedule, Size, size_of

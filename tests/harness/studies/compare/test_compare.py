@@ -7,10 +7,8 @@ from typing import Any
 import pytest
 
 import driveline
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
-from driveline.harness.simulation import many_runs
 from driveline.harness.studies.compare import side_by_side
 from driveline.harness.studies.compare.compare import (
     Outcome,
@@ -20,7 +18,9 @@ from driveline.harness.studies.compare.compare import (
     run_cases,
     write_tables,
 )
+from fmuloop import many_runs
 from tests.foreign import tampered
+from toolground.errors import UserError
 
 OURS = PLACES["controller"][0]
 
@@ -42,16 +42,16 @@ def test_each_manoeuvre_has_a_figure_but_five_of_the_usual_ten():
 
 
 def test_plants_and_manoeuvres_of_the_same_name_are_refused():
-    with pytest.raises(DrivelineError, match="two plants are called A"):
+    with pytest.raises(UserError, match="two plants are called A"):
         cases(["A", "folder/A.fmu"], ["drive"], ["B"])
-    with pytest.raises(DrivelineError, match="two controllers are called B"):
+    with pytest.raises(UserError, match="two controllers are called B"):
         cases(["A"], ["drive"], ["B", "folder/B.fmu"])
-    with pytest.raises(DrivelineError, match=r"without damping is called off, .* rename the file off\.fmu"):
+    with pytest.raises(UserError, match=r"without damping is called off, .* rename the file off\.fmu"):
         cases(["off"], ["drive"], ["B", "off.fmu"])
-    with pytest.raises(DrivelineError, match="there is no controller to compare"):
+    with pytest.raises(UserError, match="there is no controller to compare"):
         cases(["A"], ["drive"], [])
     slow, fast = (driveline.composed("tip", duration=1.0, T_driver=torque) for torque in (1.0, 2.0))
-    with pytest.raises(DrivelineError, match="two manoeuvres are called tip; rename one"):
+    with pytest.raises(UserError, match="two manoeuvres are called tip; rename one"):
         driveline.compare([slow, fast])
 
 
@@ -87,7 +87,7 @@ def test_a_mapping_is_for_the_controllers_that_have_its_names(native, tmp_path, 
     found = driveline.compare([tipin], *blocks, mapping={"controller.T_ref": "out"}, **given)
     assert list(found.values()) == [{}, {}, {"controller.T_ref": "out"}]
     monkeypatch.setattr(side_by_side, "run_many", None)
-    with pytest.raises(DrivelineError, match=r"in Mine\.fmu nowhere does not exist"):
+    with pytest.raises(UserError, match=r"in Mine\.fmu nowhere does not exist"):
         driveline.compare([tipin], *blocks, mapping={"controller.T_ref": "nowhere"}, **given)
 
 

@@ -12,10 +12,7 @@ import numpy as np
 import pytest
 
 import driveline
-from driveline.harness.base.errors import DrivelineError, MissingExtra, WiringError
 from driveline.harness.commands.cli import main
-from driveline.harness.cosimulation.interface import Interface
-from driveline.harness.cosimulation.system import Connection
 from driveline.harness.loop.places import STEP_SIZE, T_S
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
@@ -24,13 +21,17 @@ from driveline.harness.manoeuvres.road_load import RoadLoad, Track
 from driveline.harness.manoeuvres.signals import NOTHING, Lines
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
 from driveline.harness.metrics.spectrum import band_rms
-from driveline.harness.recordings.drive import read_drive
 from driveline.harness.simulation.simulate import _offered, simulate
 from driveline.harness.studies.drives import recorded_drive
 from driveline.harness.studies.drives.replay import CLOSE, followed, replay, signals_of, speed_error, write
+from driverecords.drive import read_drive
+from fmuloop.errors import WiringError
+from fmuloop.interface import Interface
+from fmuloop.system import Connection
 from tests import ROOT
 from tests.foreign import tampered
 from tests.slow import slow
+from toolground.errors import MissingExtra, UserError
 
 DATA = ROOT.parent / "shared" / "data"
 TRIPS = {"bmw_i3_trip_a01": (165.0, 260.0), "bmw_i3_trip_a11": (1005.0, 1060.0)}
@@ -268,7 +269,7 @@ def test_a_drive_is_as_long_as_a_swing_is_looked_for_in(settings, load):
         track = Track("short", duration, t, *np.broadcast_to([[10.0], [20.0], [0.0]], (3, 2)))
         return replay(track, load, {"DampingController": settings})
 
-    with pytest.raises(DrivelineError, match=r"short: the recording lasts 0\.199 s; at least 0\.2 s are needed"):
+    with pytest.raises(UserError, match=r"short: the recording lasts 0\.199 s; at least 0\.2 s are needed"):
         driven(0.199)
     assert len(driven(0.2)) == 2
 

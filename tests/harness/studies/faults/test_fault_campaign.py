@@ -10,10 +10,6 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import EVERY
-from driveline.harness.base.collected_warnings import warn_once
-from driveline.harness.base.errors import DrivelineError, RunEnded
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.runs import run
 from driveline.harness.loop.places import NO_DAMPING
 from driveline.harness.loop.settings import Settings, loop
 from driveline.harness.simulation.simulate import signals, start
@@ -25,7 +21,12 @@ from driveline.harness.studies.faults.fault_injection import FaultRunner, with_f
 from driveline.harness.studies.faults.judges import JUDGES
 from driveline.models import signal_faults
 from driveline.models.controller import supervision
+from fmuloop.errors import RunEnded
+from fmuloop.experiment import Experiment
+from fmuloop.runs import run
 from tests.foreign import tampered
+from toolground.collected_warnings import warn_once
+from toolground.errors import UserError
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
@@ -83,7 +84,7 @@ def test_faults_and_states_are_numbered_as_in_the_models():
 
 
 def test_plants_of_the_same_name_are_refused(tmp_path):
-    with pytest.raises(DrivelineError, match="two plants are called car"):
+    with pytest.raises(UserError, match="two plants are called car"):
         FaultRunner(tmp_path / "SignalFaults.fmu", {"mine/car.fmu": Settings(), "theirs/car.fmu": Settings()})
 
 
@@ -184,5 +185,5 @@ def test_an_fmu_that_was_changed_since_is_refused(injector, settings, tmp_path):
     mine = shutil.copy(injector, tmp_path / "SignalFaults.fmu")
     runner = FaultRunner(mine, settings)
     mine.write_bytes((settings["TwoMassDriveline"].folder / "native" / "WheelSpeedCan.fmu").read_bytes())
-    with pytest.raises(DrivelineError, match=r"SignalFaults\.fmu is not the one that the campaign was begun with"):
+    with pytest.raises(UserError, match=r"SignalFaults\.fmu is not the one that the campaign was begun with"):
         campaign(runner, [1], 3, workers=1)

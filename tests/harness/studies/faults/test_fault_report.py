@@ -9,10 +9,8 @@ from math import inf, isnan, nan
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.commands import faults
 from driveline.harness.commands.cli import main
-from driveline.harness.cosimulation.runs import run
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.studies.faults import fault_injection
 from driveline.harness.studies.faults.fault_campaign import Outcome, campaign, table
@@ -21,7 +19,9 @@ from driveline.harness.studies.faults.fault_catalogue import IN_SITUATIONS
 from driveline.harness.studies.faults.fault_figures import case_panels
 from driveline.harness.studies.faults.fault_report import announce, write, write_case
 from driveline.harness.studies.faults.judges import JUDGES
+from fmuloop.runs import run
 from tests.harness.commands import given
+from toolground.errors import UserError
 
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
@@ -45,7 +45,7 @@ def test_every_case_and_what_was_measured_is_in_the_csv_file(outcomes, tmp_path)
     assert back == outcomes[:5]
     assert last.measured["limited"] == inf
     assert isnan(last.measured["rms"])
-    with pytest.raises(DrivelineError, match="line 2: it must have the case of its number and what was measured"):
+    with pytest.raises(UserError, match="line 2: it must have the case of its number and what was measured"):
         CaseArchive(tmp_path / "faults.csv", table(2, PLANTS))
 
 
@@ -165,7 +165,7 @@ def test_so_many_cases_are_run_from_the_first_on(native, tmp_path, monkeypatch):
 
     def campaign(_, cases, *__, **___):
         numbers.extend(cases)
-        raise DrivelineError("that is enough")
+        raise UserError("that is enough")
 
     monkeypatch.setattr("driveline.harness.studies.faults.fault_campaign.campaign", campaign)
     given = ["--plant", "TwoMassDriveline", "--fmus", str(native.parent), "--output", str(tmp_path)]

@@ -5,8 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from driveline.harness.cosimulation.experiment import Experiment
-from driveline.harness.cosimulation.runs import run
 from driveline.harness.loop.places import T_S
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -20,6 +18,8 @@ from driveline.harness.studies.faults.fault_cases import PLANS
 from driveline.harness.studies.faults.fault_injection import FaultRunner, with_faults
 from driveline.models.controller import causes, supervision
 from driveline.models.signal_faults import GAIN, LATE, MOTOR_SPEED, MOTOR_TORQUE, NO_NUMBER, WHEEL_SPEED
+from fmuloop.experiment import Experiment
+from fmuloop.runs import run
 
 ACTING = supervision.WITH_WHEEL_SPEED, supervision.WITHOUT_WHEEL_SPEED
 PLANTS = ("TwoMassDriveline", "ValidationVehicle")

@@ -12,7 +12,7 @@ from driveline.harness.studies.margins.linear_loop import LinearLoop, linear_loo
 from driveline.harness.studies.margins.linear_plant import NOISELESS, motor_and_plant
 from driveline.harness.studies.margins.modes import Mode, modes
 from driveline.harness.studies.margins.operating_point import CAN, MOTOR, Point
-from driveline.models.block.runner import runner
+from fmublocks.block.runner import runner
 
 INTERVAL = 0.001
 """In s; dead times are multiples of it."""

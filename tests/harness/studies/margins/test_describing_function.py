@@ -22,8 +22,8 @@ from driveline.harness.studies.margins.margins import margins
 from driveline.harness.studies.margins.modes import drive_train_mode
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
-from driveline.models.block.types import ContinuousBlock
 from driveline.models.physics.backlash import dead_zone
+from fmublocks.block.types import ContinuousBlock
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
 from tests.slow import slow
 

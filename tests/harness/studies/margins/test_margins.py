@@ -17,9 +17,9 @@ from driveline.harness.studies.margins.linear_plant import in_contact_and_gap
 from driveline.harness.studies.margins.margins import FREQUENCIES, margins
 from driveline.harness.studies.margins.operating_point import Point
 from driveline.models import validation_vehicle
-from driveline.models.block.operators import clip, sqrt
-from driveline.models.block.types import SampledBlock
 from driveline.models.controller import T_S
+from fmublocks.block.operators import clip, sqrt
+from fmublocks.block.types import SampledBlock
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
 from tests.slow import slow
 

@@ -5,7 +5,6 @@ from math import inf, isnan, nan
 import numpy as np
 import pytest
 
-from driveline.harness.base.errors import DrivelineError
 from driveline.harness.metrics.declaration import Column
 from driveline.harness.simulation.case_archive import CaseArchive
 from driveline.harness.studies.robustness.outcome import METRICS, OVERSHOOTS, SETTLES, SHOWN, WITHHELD, Outcome
@@ -14,6 +13,7 @@ from driveline.harness.studies.robustness.robustness_figures import DRAWN, distr
 from driveline.harness.studies.robustness.summary import Summary, goal, level_text, percent, summaries
 from driveline.harness.views.panels import Curve
 from tests.harness.studies.robustness import GOOD, outcome
+from toolground.errors import UserError
 
 STEP = 112.0
 """Of tipin15, N.m."""
@@ -109,7 +109,7 @@ FIRST = ",".join(RUNS.columns)
 def test_a_file_of_something_else_is_refused(tmp_path, text, message):
     path = tmp_path / "runs.csv"
     path.write_text(text)
-    with pytest.raises(DrivelineError, match=message):
+    with pytest.raises(UserError, match=message):
         CaseArchive(path, RUNS)
 
 

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from driveline.fmus.catalogue import EVERY
-from driveline.harness.base.errors import DrivelineError, SimulationError, UnpackingError
-from driveline.harness.cosimulation.results import Ended, Results
 from driveline.harness.design.uncertainty_box import BOX, DOUBLINGS, LOSS, Deviation, changed, deviating
 from driveline.harness.loop.places import PLACES
 from driveline.harness.loop.settings import Settings
@@ -21,7 +19,10 @@ from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.draws import draw
 from driveline.harness.studies.robustness.outcome import ROBUSTNESS_MANOEUVRES, Case
 from driveline.harness.studies.robustness.robustness_campaign import RUNS, campaign, cases
+from fmuloop.errors import SimulationError, UnpackingError
+from fmuloop.results import Ended, Results
 from tests.harness.studies.robustness import outcome
+from toolground.errors import UserError
 
 LOOPS = [("TwoMassDriveline", "DampingController"), ("TwoMassDriveline", "NoDamping")]
 
@@ -39,7 +40,7 @@ class Pretended(CaseRunner):
 
     def outcome(self, case):
         if len(self.asked) == self._fails_at:
-            raise DrivelineError("stopped")
+            raise UserError("stopped")
         self.asked.append(case)
         return outcome(case.number, case.controller, case.manoeuvre, settling_time=0.1 * case.number)
 
@@ -79,7 +80,7 @@ def test_a_campaign_goes_on_where_it_was_stopped(tmp_path, fails_at):
         return CaseArchive(tmp_path / "runs.csv", RUNS)
 
     first, second = Pretended(fails_at), Pretended()
-    with pytest.raises(DrivelineError, match="stopped"):
+    with pytest.raises(UserError, match="stopped"):
         campaign(first, [1, 2], archive(), workers=1)
     found = campaign(second, [1, 2], archive(), workers=1)
     assert len(first.asked) == fails_at
@@ -150,10 +151,10 @@ def test_an_fmu_that_was_changed_since_is_refused(controllers, tmp_path):
     one = tmp_path / "fmus" / "native" / "WheelSpeedCan.fmu"
     made.results(Case("ValidationVehicle", "DampingController", 1, "tipout"))
     one.write_bytes((tmp_path / "fmus" / "native" / "MotorTorqueLoop.fmu").read_bytes())
-    with pytest.raises(DrivelineError, match=r"WheelSpeedCan\.fmu is not the one that the campaign was begun with"):
+    with pytest.raises(UserError, match=r"WheelSpeedCan\.fmu is not the one that the campaign was begun with"):
         made.results(Case("ValidationVehicle", "DampingController", 1, "tipout"))
     one.unlink()
-    with pytest.raises(DrivelineError, match="there is no FMU"):
+    with pytest.raises(UserError, match="there is no FMU"):
         made.results(Case("ValidationVehicle", "DampingController", 2, "tipout"))
 
 

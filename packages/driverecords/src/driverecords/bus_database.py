@@ -1,0 +1,106 @@
+"""What frames of a bus mean: databases, read by cantools."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from toolground.optional_packages import required
+from toolground.plain_text import plain
+
+from .source import RecordingError
+from .text_file import encoding_of
+
+
+class Known(NamedTuple):
+    """A message, and the database that declares it."""
+
+    message: Any
+    database: Path
+
+
+Messages = Mapping[tuple[int, bool], Sequence[Known]]
+"""By identifier, and whether that is an extended one."""
+
+IDENTIFIER = re.compile(r"\b(BO_|SG_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_|BO_TX_BU_)(\s+)(\d+)(?=\s)")
+STANDARD, EXTENDED = 0x7FF, 0x1FFF_FFFF
+FLAG = 1 << 31
+
+COMPARED = ["start", "length", "byte_order", "is_signed", "scale", "offset", "is_float", "unit", "multiplexer_ids"]
+"""Of a signal that two databases declare."""
+
+
+def known_messages(databases: Sequence[Path]) -> Messages:
+    """All that databases declare.
+
+    Raises:
+        RecordingError: one is no database.
+    """
+    found: dict[tuple[int, bool], list[Known]] = {}
+    for path in databases:
+        for message in _messages(path):
+            found.setdefault((message.frame_id, message.is_extended_frame), []).append(Known(message, path))
+    return found
+
+
+def the_one(path: Path, known: Sequence[Known]) -> Any:
+    """The message of which these are the declarations.
+
+    Raises:
+        RecordingError: they differ; it names the databases.
+    """
+    first, *others = known
+    for other in others:
+        if differs := next(_differences(first.message, other.message), None):
+            raise RecordingError(
+                f"{path}: {first.database} and {other.database} both know frame 0x{first.message.frame_id:X}, and "
+                f"differ in {differs}; give the one that is right"
+            )
+    return first.message
+
+
+def _differences(a: Any, b: Any) -> Iterator[str]:
+    if a.length != b.length:
+        yield f"its length ({a.length} and {b.length} bytes)"
+    signals = [{signal.name: signal for signal in message.signals} for message in (a, b)]
+    for name in sorted(signals[0].keys() ^ signals[1].keys()):
+        yield f"signal {plain(name, 60)}, which only one has"
+    for name in sorted(signals[0].keys() & signals[1].keys()):
+        one, other = (each[name] for each in signals)
+        for what in COMPARED:
+            left, right = getattr(one, what), getattr(other, what)
+            if left != right:
+                yield f"{what.replace('_', ' ')} of {plain(name, 60)} ({plain(left, 60)} and {plain(right, 60)})"
+        if _texts(one) != _texts(other):
+            yield f"the named values of {plain(name, 60)}"
+
+
+def _texts(signal: Any) -> dict[int, str]:
+    return {number: str(text) for number, text in (signal.choices or {}).items()}
+
+
+def without_value(signal: Any) -> list[float]:
+    """The values of a signal that are named and stand for none: `65535 "SNA"`. Those of a state or a flag, which has no
+    unit and no scale, are its values."""
+    if (signal.scale, signal.offset, signal.unit or "") == (1, 0, ""):
+        return []
+    return [number * signal.scale + signal.offset for number in signal.choices or {}]
+
+
+def _messages(path: Path) -> Sequence[Any]:
+    cantools = required("cantools", "decoding the frames of a bus", "driverecords[formats]")
+    if not path.is_file():
+        raise RecordingError(f"there is no database {path}")
+    try:
+        text = path.read_text(encoding=encoding_of(path))
+        if text.lstrip().startswith("<"):
+            return cantools.database.load_file(path, strict=False).messages
+        return cantools.database.load_string(IDENTIFIER.sub(_flagged, text), strict=False).messages
+    except Exception as error:
+        raise RecordingError(f"{path} is no database of a bus (DBC, KCD, SYM, ARXML): {plain(error, 200)}") from error
+
+
+def _flagged(found: re.Match[str]) -> str:
+    """The identifier of a DBC with the flag of an extended one, which some tools leave out."""
+    number = int(found[3])
+    return f"{found[1]}{found[2]}{number | FLAG if STANDARD < number <= EXTENDED else number}"
