@@ -55,7 +55,7 @@ test-target: $(READY) ## the controller's C on an emulated processor; says what 
 	$(BIN)/python -m pytest tests/fmus/target tests/harness/exchange/target
 
 mutation: $(READY) ## a sample of small faults, put into the code one by one: do the tests find them?
-	$(BIN)/python tests/mutation
+	$(BIN)/python -m tests.mutation
 
 fuzz: $(READY) ## odd calls, files and options by the thousand
 	$(BIN)/python -m tests.fuzz --json fuzz.json

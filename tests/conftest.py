@@ -2,39 +2,18 @@
 
 import gc
 import os
-import pickle
-import tempfile
 from collections.abc import Generator
 from pathlib import Path
 from shutil import copytree
-from typing import Any
 
 import pytest
-from hypothesis import settings
+from fmutesting.plugin import *  # noqa: F403  # fixtures and hooks
+from fmutesting.skipping import skipped_if_impossible
 
 from driveline.fmus.catalogue import FMUS
-from driverecords import bounded_reading
 from fmublocks.builds import builders
 from fmublocks.python.packaging import build
 from tests.browser import browser
-from tests.compiling import caching_compiler
-from tests.skipping import skipped_if_impossible
-
-# the same examples in every run, and nothing timed
-settings.register_profile("driveline", deadline=None, derandomize=True)
-settings.load_profile("driveline")
-
-
-def pytest_configure(config: pytest.Config) -> None:
-    """Compiles through what keeps its results with the cache of pytest, unless a compiler is named from outside. What
-    would start a process on each core runs in one: tests that need several say so. The parser of A2L files works by
-    gRPC, whose handlers of fork abort one in a hundred of the programs that a test starts after it."""
-    os.environ["LOKY_MAX_CPU_COUNT"] = "1"
-    os.environ["GRPC_ENABLE_FORK_SUPPORT"] = "0"
-    if "CC" not in os.environ and hasattr(config, "cache"):
-        command = caching_compiler(config.cache.mkdir("compiled"))
-        if command:
-            os.environ["CC"] = str(command)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -56,12 +35,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         items.sort(key=lambda item: item.path.parent != Path(__file__).parent)
 
 
-@pytest.fixture
-def uncached_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The compiler itself, for tests of what it makes of the same source again."""
-    monkeypatch.delenv("CC", raising=False)
-
-
 @pytest.fixture(scope="session")
 def built(tmp_path_factory):
     """Folder with all FMUs of the project, freshly built."""
@@ -69,14 +42,6 @@ def built(tmp_path_factory):
     for fmu in FMUS.values():
         build(fmu, folder)
     return folder
-
-
-@pytest.fixture(scope="session")
-def native_builder():
-    """Builds an FMU natively for this machine; skips where that is not possible."""
-    with skipped_if_impossible():
-        (builder,) = builders("native")
-    return builder
 
 
 @pytest.fixture(scope="session")
@@ -120,25 +85,6 @@ def study_folder(both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     (tmp_path / "build").symlink_to(both_built)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-@pytest.fixture
-def read_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Recordings are read by the process of the tests; one of their own imports packages for a second, each time."""
-
-    def asked(_: Path, question: Any) -> Any:
-        return pickle.loads(pickle.dumps(bounded_reading.outcome(*pickle.loads(pickle.dumps(question)))))
-
-    monkeypatch.setattr(bounded_reading, "_asked", asked)
-
-
-@pytest.fixture
-def unpacked(tmp_path, monkeypatch):
-    """Folder for temporary files, in which FMUs are unpacked."""
-    folder = tmp_path / "unpacked"
-    folder.mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(folder))
-    return folder
 
 
 @pytest.fixture(scope="session")

@@ -5,20 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.models import two_mass_driveline
-from tests.back_to_back import (
-    by_functions,
-    compare_block,
-    compare_loop,
-    difference,
-    random_inputs,
-)
-from tests.slow import slow
+from tests.back_to_back import by_functions, compare_block, compare_loop, difference, random_inputs
 
 EXACT = 1e-12
 """Where no flank is crossed."""

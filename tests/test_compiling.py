@@ -5,8 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-
-from tests import compiling
+from fmutesting import compiling
 
 COUNTING = """#!/bin/sh
 case " $* " in *" -E "*) ;; *) echo >> '{made}' ;; esac

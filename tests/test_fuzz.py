@@ -4,10 +4,10 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from fmutesting.skipping import skipped_if_impossible
+from fmutesting.slow import slow
 
 from tests.fuzz import TARGETS
-from tests.skipping import skipped_if_impossible
-from tests.slow import slow
 
 
 @pytest.mark.parametrize("name", slow(TARGETS, but=("recordings", "parameter_files")))

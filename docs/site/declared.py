@@ -4,6 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
+from fmutesting.legal_hosts import HOSTS
+
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.identification import car_file, diagnostics, estimator, identify, noise, step, torque_loop
 from driveline.harness.identification.priors import PRIORS
@@ -32,7 +34,6 @@ from driverecords.thresholds import Threshold
 from fmublocks.description.documentation import tables, timing
 from fmublocks.fmu import Fmu
 from fmucheck import check
-from tests.fmus.legal_hosts import HOSTS
 from toolground.file_limits import LIMITS
 
 CHECKS = Path(__file__).with_name("recording_checks.md").read_text(encoding="utf-8")

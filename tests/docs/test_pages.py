@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 import yaml
+from fmutesting.together import together
 
 import driveline
 from driveline.harness.commands.cli import COMMANDS, complete_commands, main, parser
 from tests import ROOT
 from tests.docs.pages import BLOCK, INLINE, PAGES, blocks, commands, prose, text_of
-from tests.together import together
 
 PUBLIC = frozenset(dir(driveline))
 

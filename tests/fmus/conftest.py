@@ -1,6 +1,6 @@
 """Instances of single FMUs, of those that a module calls `built`."""
 
-from tests.fmus.host import instance
+from fmutesting.host import instance
 
 motor = instance("built", "MotorTorqueLoop")
 can = instance("built", "WheelSpeedCan")

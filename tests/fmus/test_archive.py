@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from fmutesting.together import together
 
 from driveline.harness.commands.cli import main
 from fmublocks import release
 from fmublocks.archive import write_archive
-from tests.together import together
 from toolground.atomic_files import write_text
 
 FILES = {"modelDescription.xml": b"<fmiModelDescription/>"}

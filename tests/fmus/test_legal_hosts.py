@@ -10,14 +10,14 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.model_description import ModelDescription
+from fmutesting.legal_hosts import HOSTS, LASTS, LONG, LONG_IN_PYTHON, LONGER
+from fmutesting.libpython import with_libpython
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.block.types import SampledBlock
 from fmublocks.native.compiler import host_compiler
-from tests.fmus.legal_hosts import HOSTS, LASTS, LONG, LONG_IN_PYTHON, LONGER
-from tests.fmus.libpython import with_libpython
 from tests.fuzz.calls import as_fmi2
-from tests.together import together
 
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 FLAGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-O1")

@@ -4,11 +4,10 @@ import math
 import sys
 
 import pytest
+from fmutesting.host import opened
+from fmutesting.together import together
 from hypothesis import given
 from hypothesis import strategies as st
-
-from tests.fmus.host import opened
-from tests.together import together
 
 START = 0.3
 """Time in s; there is no power of two or ten near it."""

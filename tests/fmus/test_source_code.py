@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
+from fmutesting.together import together
 
 from driveline.fmus.source_code import code_of
 from fmublocks import origin
-from tests.together import together
 
 PYTHON = '''
 """Text."""

@@ -6,6 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 from fmpy import read_model_description
+from fmutesting.host import opened
+from fmutesting.slow import slow
+from fmutesting.together import together
 
 from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.one_car import of_one_car
@@ -18,10 +21,7 @@ from fmublocks.block.declaration import variables
 from fmublocks.errors import BuildError
 from fmublocks.python.packaging import build
 from tests import ROOT
-from tests.fmus.host import opened
 from tests.fmus.native.test_page import EXAMPLE
-from tests.slow import slow
-from tests.together import together
 
 CAR = ROOT / "examples" / "cars" / "mid_size.toml"
 GAINS = "k_d = 4.0\nT_gap = 70.0\n"

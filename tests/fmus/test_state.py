@@ -3,9 +3,10 @@
 import math
 import re
 
+from fmutesting.host import opened
+from fmutesting.together import together
+
 from driveline.fmus.catalogue import FMUS
-from tests.fmus.host import opened
-from tests.together import together
 
 every_fmu = together("name", FMUS)
 

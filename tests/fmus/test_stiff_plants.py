@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from fmutesting.host import Host, opened
+from fmutesting.together import together
 
 from driveline.models.physics.plant import Output
-from tests.fmus.host import Host, opened
-from tests.together import together
 
 DURATION, STEP = 0.2, 1e-3
 

@@ -4,10 +4,11 @@ import math
 import sys
 from itertools import cycle, repeat
 
+from fmutesting.host import opened
+from fmutesting.together import together
+
 from driveline.fmus.catalogue import FMUS
 from fmublocks.block.types import SampledBlock
-from tests.fmus.host import opened
-from tests.together import together
 
 SAMPLED = [name for name, fmu in FMUS.items() if isinstance(fmu.block, SampledBlock)]
 T_S = 0.002

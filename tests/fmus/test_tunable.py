@@ -7,14 +7,14 @@ from typing import Any
 
 import pytest
 from fmpy.fmi2 import FMU2Model
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import EVERY, FMUS
 from fmublocks.block.runner import runner
 from fmublocks.description.variables import Variable, interface
 from tests.back_to_back import random_inputs
-from tests.fmus.host import opened
 from tests.fmus.test_values import outside
-from tests.together import together
 
 STEP = 0.001
 

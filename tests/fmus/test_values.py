@@ -3,12 +3,12 @@
 import math
 
 import pytest
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.description.variables import LARGEST, interface
 from fmublocks.protocol import INPUT_TOLERANCE
-from tests.fmus.host import opened
-from tests.together import together
 
 SETTABLE = [
     (name, variable)

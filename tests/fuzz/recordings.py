@@ -16,11 +16,11 @@ from driverecords.drive import read_drive
 from driverecords.format_detection import is_text
 from driverecords.measurement import read_measurement
 from driverecords.source import RecordingError
+from packages.driverecords.tests.car import RADIUS, RATIO
+from packages.driverecords.tests.car import drive as excited
+from packages.driverecords.tests.variants import TEXTS, recording, write_arrow, write_mdf
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
 from tests.fuzz.target import Attempt, Unclean, target
-from tests.harness.recordings.car import RADIUS, RATIO
-from tests.harness.recordings.car import drive as excited
-from tests.harness.recordings.variants import TEXTS, recording, write_arrow, write_mdf
 from toolground.errors import UserError
 from toolground.file_limits import PATIENCE
 

@@ -22,9 +22,9 @@ from driverecords.quantities import aliases
 from fmublocks.errors import BuildError
 from fmuloop.system import System
 from fmuloop.wiring import fit
+from packages.driverecords.tests.test_bus_log import drive as frames
+from packages.driverecords.tests.test_bus_log import write as write_log
 from tests.fuzz.target import Attempt, Unclean, target
-from tests.harness.recordings.test_bus_log import drive as frames
-from tests.harness.recordings.test_bus_log import write as write_log
 from toolground.errors import UserError
 from toolground.file_limits import SECONDS
 from toolground.unit_conversion import SI, factor

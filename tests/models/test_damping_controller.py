@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from fmutesting.slow import slow
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -26,7 +27,6 @@ from tests.models.controller.controllers import (
     run_with_motor,
     shaken,
 )
-from tests.slow import slow
 
 BLOCK = damping_controller.BLOCK
 P = BLOCK.Parameters()

@@ -6,6 +6,7 @@ from math import cos, exp, sin, sqrt
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
@@ -13,7 +14,6 @@ from scipy.integrate import solve_ivp
 from driveline.models import motor_torque_loop as motor
 from driveline.models.physics import dead_time
 from fmublocks.block.integrator import Integrator
-from tests.slow import slow
 
 P = motor.Parameters()
 SILENT = P._replace(sigma_T=0.0, sigma_omega=0.0, q_omega=0.0)

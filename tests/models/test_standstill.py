@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 
 from driveline.models import two_mass_driveline, validation_vehicle
 from fmublocks.block.integrator import Integrator
-from tests.slow import slow
 
 BOTH = [two_mass_driveline, validation_vehicle]
 PLANTS = pytest.mark.parametrize("plant", BOTH, ids=lambda m: m.BLOCK.name)

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from driveline.models import two_mass_driveline as driveline
 from fmublocks.block.integrator import Integrator
 from tests.models.exact_driveline import ExactDriveline
-from tests.slow import slow
 
 RECORDED = driveline.Parameters(recorded_load=True)
 

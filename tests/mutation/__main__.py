@@ -1,6 +1,6 @@
 """Mutation run: small faults are put into the code one at a time; for each a test must fail.
 
-    python tests/mutation [--faults N] [--seed N] [--workers N] [FILE ...]
+    python -m tests.mutation [--faults N] [--seed N] [--workers N] [FILE ...]
 
 Draws faults of all rooms, or of the files that are named, runs the tests that cover their files, and prints for each
 which test has found it, at the end the rate of those that were found. What no test can find is explained in
@@ -14,9 +14,9 @@ import tomllib
 from collections import Counter
 from pathlib import Path
 
-from covering import rounds, slow
-from mutants import drawn, mutants_of, rooms
-from workers import finders
+from tests.mutation.covering import rounds, slow
+from tests.mutation.mutants import drawn, mutants_of, rooms
+from tests.mutation.workers import finders
 
 LEAST_SCORE = 0.95
 
@@ -28,7 +28,7 @@ def explained() -> set[tuple[str, str, str]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(prog="python tests/mutation", description="Do the tests find small faults?")
+    parser = argparse.ArgumentParser(prog="python -m tests.mutation", description="Do the tests find small faults?")
     parser.add_argument("files", nargs="*", metavar="FILE", help="of all faults (default: a sample of all rooms)")
     parser.add_argument("--faults", type=int, default=200, metavar="N", help="in the sample (default: 200)")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of the sample (default: 1)")

@@ -4,7 +4,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-from mutants import ROOT, rooms
+from tests.mutation.mutants import ROOT, rooms
 
 CALLS_IN_C = "places", "calls", "same_words", "as_python", "rates", "no_step_to_nowhere", "content"
 CALLS = (

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterator
 from re import Match
 
-from faults_in_python import number
+from tests.mutation.faults_in_python import number
 
 NO_CODE = re.compile(
     r"""/\*.*?\*/  # comments

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from covering import CALLS, IN_C, LAST, own, rounds
-from mutants import LEAST, ROOT, Mutant, not_copied, rooms, shares
-from remembering import remembered
 
 from driveline.fmus.catalogue import FMUS
+from tests.mutation.covering import CALLS, IN_C, LAST, own, rounds
+from tests.mutation.mutants import LEAST, ROOT, Mutant, not_copied, rooms, shares
+from tests.mutation.remembering import remembered
 
 ONE = Mutant("code.py", 1, 4, "x = 1.0", "1.0", "1.2")
 

@@ -23,8 +23,9 @@ import pandas  # noqa: F401
 import pytest
 import scipy.signal  # noqa: F401
 from hypothesis import Phase, settings
-from mutants import ROOT, Mutant, not_copied
-from remembering import Remembered
+
+from tests.mutation.mutants import ROOT, Mutant, not_copied
+from tests.mutation.remembering import Remembered
 
 settings.register_profile("mutation", deadline=None, derandomize=True, phases=(Phase.explicit, Phase.generate))
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.foreign import tampered
 
 from docs.studies import coupling_error
 from docs.studies.coupling_error import (
@@ -23,7 +24,6 @@ from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
 from fmuloop.system import Scheme
-from tests.foreign import tampered
 
 IN_CONTACT = COUPLING_MANOEUVRES[0]
 

@@ -6,6 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from fmutesting.skipping import skipped_if_impossible
+from fmutesting.together import together
 
 from docs.site import numbers
 from docs.site.numbers import as_markdown, disagreements, shown
@@ -17,8 +19,6 @@ from driveline.harness.views.panels import DASHED, Axis, Band, Curve, Drawing, L
 from fmublocks.errors import BuildError
 from tests import ROOT
 from tests.docs.pages import PAGES, text_of
-from tests.skipping import skipped_if_impossible
-from tests.together import together
 
 MS = Column("settling", "ms", 0, 0.02)
 

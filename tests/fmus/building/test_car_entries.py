@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.together import together
 
 from driveline.fmus.building.car_entries import (
     DEFAULT,
@@ -20,7 +21,6 @@ from driveline.fmus.building.car_entries import (
 from driveline.fmus.building.one_car import FOLLOW, MEASURED, of_one_car
 from driveline.fmus.building.parameter_files import read_vehicle
 from driveline.fmus.errors import ParameterFileError
-from tests.together import together
 from toolground.toml_file import toml_entries
 
 

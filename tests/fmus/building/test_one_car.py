@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmutesting.together import together
 
 from docs.studies.data_file import ROOT
 from docs.studies.one_car import cars, frequencies
@@ -27,7 +28,6 @@ from driveline.fmus.errors import ParameterFileError
 from driveline.harness.studies.margins.linear_plant import linear_plant
 from driveline.harness.studies.margins.operating_point import Point
 from fmublocks.block.types import ContinuousBlock
-from tests.together import together
 
 EXAMPLES = sorted((ROOT / "examples" / "cars").glob("*.toml"))
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import pytest
+from fmutesting.together import together
 
 from driveline.fmus.building.parameter_files import (
     MOST_PROBLEMS,
@@ -22,7 +23,6 @@ from driveline.fmus.names import COMPARATORS, RENAMED
 from fmublocks.block.declaration import Integer, Real, variables
 from fmublocks.fmu import Fmu
 from tests import ROOT
-from tests.together import together
 
 EXAMPLES = sorted((ROOT / "examples" / "cars").glob("*.toml"))
 PARAMETERS = {name: {v.name: v for v in variables(fmu.block.Parameters)} for name, fmu in FMUS.items()}

@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
+from fmutesting.together import together
 from matplotlib.axes import Axes
 
 from driveline.fmus.catalogue import EVERY, FMUS
@@ -26,7 +27,6 @@ from fmublocks.description.variables import interface
 from fmublocks.errors import BuildError
 from fmublocks.fmu import Fmu
 from fmublocks.release import DATE, VERSION, date
-from tests.together import together
 
 every_fmu = together("name", FMUS)
 

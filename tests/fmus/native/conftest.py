@@ -1,6 +1,6 @@
 """Instances of single FMUs, of those that a module calls `native`."""
 
-from tests.fmus.host import instance
+from fmutesting.host import instance
 
 motor = instance("native", "MotorTorqueLoop")
 can = instance("native", "WheelSpeedCan")

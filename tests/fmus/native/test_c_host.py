@@ -5,12 +5,12 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.loop.places import NATIVE
 from fmublocks.native.compiler import host_compiler
-from tests.fmus.host import opened
-from tests.together import together
 
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 

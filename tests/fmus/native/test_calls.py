@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import pytest
 from fmpy.fmi1 import FMICallException
+from fmutesting.forged import forged, sealed
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.block.declaration import with_defaults
-from tests.fmus.forged import forged, sealed
-from tests.fmus.host import opened
 from tests.fmus.native.test_places import CO_SIMULATION, arguments_of, call
-from tests.together import together
 
 OK, DISCARD, ERROR = 0, 2, 3
 DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED = range(4)

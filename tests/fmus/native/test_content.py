@@ -5,11 +5,11 @@ import struct
 import sys
 
 import pytest
+from fmutesting.forged import HEAD, forged, with_number
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
-from tests.fmus.forged import HEAD, forged, with_number
-from tests.fmus.host import opened
-from tests.together import together
 
 SEED = 123457
 OUTPUTS_KNOWN = 2

@@ -11,6 +11,8 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import fmi3LogMessageCallback
 from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
+from fmutesting.host import in_words_of_fmi2, opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import EVERY, FMUS
 from driveline.fmus.names import COMPARATORS
@@ -18,9 +20,8 @@ from fmublocks.builds import NotPossible, builders
 from fmublocks.description.units import base_exponents
 from fmublocks.description.variables import interface
 from fmublocks.native.packaging import FMI_HEADERS
-from tests.fmus.host import in_words_of_fmi2, opened
 from tests.fmus.native.any_build import *  # noqa: F403
-from tests.fmus.native.test_rates import (  # noqa: F401
+from tests.fmus.native.test_rates import (
     ramp,
     rates_of,
     test_a_derivative_that_is_no_number_is_refused_and_not_given_out,
@@ -33,7 +34,6 @@ from tests.fmus.native.test_rates import (  # noqa: F401
     test_during_initialization_parameters_can_be_known_too,
     test_rates_of_outputs_are_their_differences_over_a_short_time,
 )
-from tests.together import together
 
 every_fmu = together("name", FMUS)
 OK, ERROR = 0, 3

@@ -5,6 +5,8 @@ import random
 import subprocess
 
 import pytest
+from fmutesting.functions import Functions
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.block.noise import M
@@ -13,8 +15,6 @@ from fmublocks.description.variables import interface
 from fmublocks.native.compiler import host_compiler
 from fmublocks.native.packaging import C_FILES
 from fmublocks.native.trace import leaves
-from tests.fmus.native.functions import Functions
-from tests.together import together
 
 TOLERANCE = 1e-12
 """Relative. Every operation is the same and rounds the same; on another machine sin, tanh and so on may not."""

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.together import together
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -28,7 +29,6 @@ from fmublocks.native.shared_header import shared_header
 from fmublocks.native.tableau import rosenbrock_header, step_header
 from tests.models.block.test_integrator import *  # noqa: F403
 from tests.models.block.test_integrator import LITTLE_WORK, LIVELY, Body, MakeIntegrator, Nothing, P, block
-from tests.together import together
 
 BLOCK = """
 typedef double real;

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Model, fmi2Discard
 from fmpy.validation import validate_fmu
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from benchmarks.model_exchange import integrated, recorded, stepped
 from driveline.fmus.catalogue import FMUS
@@ -21,9 +23,7 @@ from fmublocks.description.units import base_exponents, rate_unit
 from fmublocks.description.variables import interface
 from fmuloop.description import document_root
 from fmuloop.limits import USUAL_LIMITS
-from tests.fmus.host import opened
 from tests.fmus.native.test_places import ROOM, call
-from tests.together import together
 
 DISCARD, ERROR = 2, 3
 CONTINUOUS = [name for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)]

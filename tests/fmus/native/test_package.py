@@ -10,14 +10,14 @@ import zipfile
 import fmpy
 import pytest
 from fmpy.build import build_platform_binary
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.catalogue import FMUS
 from fmublocks.builds import NotPossible
 from fmublocks.native import compiler
 from tests import ROOT
-from tests.fmus.host import opened
-from tests.together import together
 
 LARGEST = 150 * 1024
 every_fmu = together("name", FMUS)

@@ -6,9 +6,8 @@ import ctypes
 import pytest
 from fmpy.fmi2 import FMU2Model, FMU2Slave
 from fmpy.fmi3 import FMU3Model
-
-from tests.fmus.host import of_fmi3, opened
-from tests.together import together
+from fmutesting.host import of_fmi3, opened
+from fmutesting.together import together
 
 OK, ERROR = 0, 3
 

@@ -6,12 +6,12 @@ import zipfile
 from functools import cache
 
 import pytest
+from fmutesting.skipping import skipped_if_impossible
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.builds import builders
 from fmublocks.native.compiler import MAC_ARM, MAC_INTEL, universal
 from fmublocks.native.xcp import FOLDER
-from tests.skipping import skipped_if_impossible
 
 LARGEST = 280 * 1024
 """Of a file with four libraries, one of them for two processors. 150 kB were enough until Arm Macs had one twice,

@@ -5,11 +5,11 @@ import sys
 
 import pytest
 from fmpy.fmi1 import FMICallException
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.block.types import ContinuousBlock
-from tests.fmus.host import opened
-from tests.together import together
 
 CONTINUOUS = [name for name, fmu in FMUS.items() if isinstance(fmu.block, ContinuousBlock)]
 every_continuous = together("name", CONTINUOUS)

@@ -5,6 +5,9 @@ from collections.abc import Callable
 from typing import Annotated, Any, NamedTuple
 
 import pytest
+from fmutesting.host import opened
+from fmutesting.recorded import recorded
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.block.declaration import Boolean, Real
@@ -16,9 +19,6 @@ from fmublocks.native.records import records_of, structs
 from fmublocks.native.source import block_sources
 from fmublocks.native.statements import Statements
 from fmublocks.native.terms import Terms
-from tests.fmus.host import opened
-from tests.fmus.native.recorded import recorded
-from tests.together import together
 
 
 class Nothing(NamedTuple):

@@ -3,11 +3,11 @@
 import fmpy
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.block.types import ContinuousBlock
 from fmublocks.description.variables import interface
-from tests.slow import slow
 
 CASES = [
     *(("CoSimulation", name) for name in FMUS),

@@ -7,14 +7,14 @@ from string import Formatter
 from typing import Any, NamedTuple
 
 import pytest
+from fmutesting.forged import forged
+from fmutesting.host import Host, opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks import protocol
 from fmublocks.description.variables import interface
 from fmublocks.native.records import paths, records_of
-from tests.fmus.forged import forged
-from tests.fmus.host import Host, opened
-from tests.together import together
 
 DISCARD, ERROR, FATAL = 2, 3, 4
 

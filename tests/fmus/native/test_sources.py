@@ -5,12 +5,12 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.native.compiler import FLAGS, host_compiler
 from fmublocks.native.shared_header import definition
-from tests.fmus.host import opened
-from tests.together import together
 
 PROGRAM = Path(__file__).parent / "linked.c"
 STEPS = 100

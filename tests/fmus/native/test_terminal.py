@@ -9,6 +9,8 @@ import fmpy
 import pytest
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
+from fmutesting.bus import CAN_TRANSMIT, CONFIGURATION, CONFIRM, FORMAT_ERROR, Node, Operation, frame_in, written
+from fmutesting.forged import sealed
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
@@ -17,8 +19,6 @@ from driveline.fmus.catalogue import FMUS
 from driveline.models.wheel_speed_can import FRAME
 from fmublocks.builds import NotPossible, sender_builder
 from fmublocks.description.terminal import FOLDER, OPERATIONS_SIZE
-from tests.fmus.bus import CAN_TRANSMIT, CONFIGURATION, CONFIRM, FORMAT_ERROR, Node, Operation, frame_in, written
-from tests.fmus.forged import sealed
 
 DATABASE = b'VERSION ""\n'
 SPEEDS = (40.0, 41.0)

@@ -13,12 +13,12 @@ from zipfile import ZipFile
 
 import fmpy
 import pytest
+from fmutesting.host import Host, opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.description.variables import interface
 from fmublocks.native.xcp import FOLDER, address_in
-from tests.fmus.host import Host, opened
-from tests.together import together
 
 pytestmark = pytest.mark.skipif(fmpy.platform != "linux64", reason="addresses are those of Linux")
 

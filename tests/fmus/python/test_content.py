@@ -4,11 +4,11 @@ import json
 import math
 
 import pytest
+from fmutesting.forged import with_checksum
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from fmublocks.python import content
-from tests.fmus.forged import with_checksum
-from tests.fmus.host import opened
-from tests.together import together
 
 
 def changed(path, value):

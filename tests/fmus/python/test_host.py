@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from fmutesting.host import opened
+from fmutesting.slow import slow
 
 from driveline.fmus.catalogue import FMUS
 from tests import copied_sources
-from tests.fmus.host import opened
-from tests.slow import slow
 
 every_fmu = pytest.mark.parametrize("name", slow(FMUS, but=("MotorTorqueLoop",)))
 

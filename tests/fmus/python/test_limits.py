@@ -10,11 +10,11 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from fmutesting.libpython import with_libpython
+from fmutesting.skipping import skipped_if_impossible
+from fmutesting.together import together
 
 from fmublocks.native.compiler import host_compiler
-from tests.fmus.libpython import with_libpython
-from tests.skipping import skipped_if_impossible
-from tests.together import together
 
 HOST = Path(__file__).parents[1] / "host.py"
 OK = 0

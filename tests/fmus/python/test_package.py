@@ -8,14 +8,14 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
+from fmutesting.host import opened
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import FMUS
 from fmublocks.python.bundle import imported, package_name, source_path
 from fmublocks.python.packaging import build
 from fmublocks.release import DATE
 from tests import ROOT, copied_sources
-from tests.fmus.host import opened
-from tests.together import together
 
 
 def run(arguments, folder, **environment):

@@ -3,6 +3,7 @@
 import shutil
 
 import pytest
+from fmutesting.skipping import skipped_if_impossible
 
 from docs.studies.target_deviations import CHECKER, DEVIATIONS, GENERATED, Finding, findings, reason
 from driveline.fmus.catalogue import CONTROLLERS
@@ -10,7 +11,6 @@ from fmublocks.native.compiler import CompilerError
 from fmublocks.native.statements import SINGLE
 from fmublocks.target.image import require_packages
 from fmublocks.target.sources import target_sources
-from tests.skipping import skipped_if_impossible
 
 SOURCES = target_sources(CONTROLLERS["DampingController"], SINGLE)
 

@@ -10,6 +10,8 @@ from platform import machine
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import CONTROLLERS, FMUS
 from driveline.harness.exchange.target.comparison import responses
@@ -25,8 +27,6 @@ from fmublocks.native.statements import SINGLE
 from fmublocks.target.image import FLAGS, host_program
 from fmublocks.target.link import Link
 from fmublocks.target.sources import PRECISIONS, target_sources
-from tests.slow import slow
-from tests.together import together
 
 OURS = CONTROLLERS["DampingController"]
 

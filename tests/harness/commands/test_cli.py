@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 from fmpy.util import read_csv
+from fmutesting.foreign import build_car, tampered
 
 from driveline.harness.commands import build
 from driveline.harness.commands.cli import COMMANDS, PURPOSES, SHELLS
@@ -22,7 +23,6 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.run_metrics import Metrics
 from tests import ROOT
-from tests.foreign import build_car, tampered
 from tests.harness.commands import answer, given
 
 HARNESS = "driveline.harness"

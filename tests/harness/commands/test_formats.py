@@ -4,13 +4,13 @@ import json
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 
 from driveline.harness.commands.cli import main
 from driveline.harness.views.signals_file import FORMATS
 from driverecords.channels import Channels
 from driverecords.drive import read_drive
 from driverecords.measurement import read_measurement
-from tests.slow import slow
 
 pytestmark = pytest.mark.usefixtures("read_here")
 

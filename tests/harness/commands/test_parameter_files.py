@@ -1,6 +1,7 @@
 """A car and its gains on the command line: where the entries of the files go, and what is refused."""
 
 import pytest
+from fmutesting.foreign import SMALLEST_CONTROLLER, build_car, build_relay, tampered
 
 from driveline.fmus.errors import ParameterFileError
 from driveline.harness.commands.cli import main
@@ -9,7 +10,6 @@ from driveline.harness.loop import built_fmus
 from driveline.harness.loop.places import PLANTS
 from fmuloop.errors import WiringError
 from tests import ROOT
-from tests.foreign import SMALLEST_CONTROLLER, build_car, build_relay, tampered
 from tests.harness.commands import given as record
 from toolground.errors import UserError
 

@@ -4,11 +4,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fmutesting.foreign import CAR, SMALLEST_CONTROLLER, build_relay
 
 from driveline.fmus.catalogue import EVERY, SIGNAL_FAULTS
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import NO_DAMPING
-from tests.foreign import CAR, SMALLEST_CONTROLLER, build_relay
 from tests.harness.commands import Capsys
 from toolground.collected_warnings import warn_once
 

@@ -8,15 +8,15 @@ import time
 from typing import Any
 
 import pytest
+from fmutesting.foreign.stranger import build_stranger
+from fmutesting.signals import started
+from fmutesting.slow import slow
 
 from driveline.harness.commands.cli import main
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from fmuloop.errors import SimulationError
 from fmuloop.many_runs import run_many
-from tests.foreign.stranger import build_stranger
-from tests.signals import started
-from tests.slow import slow
 
 COMMANDS = {
     "simulate": ["simulate"],

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fmutesting.foreign import SMALLEST_CONTROLLER, build_relay, tampered
 
 from driveline.harness.commands.cli import main
 from driveline.harness.exchange.mapping_draft import as_toml, draft, words
@@ -12,7 +13,6 @@ from driveline.harness.loop.settings import settings
 from fmuloop.errors import WiringError
 from fmuloop.interface import Interface
 from fmuloop.mapping import parsed, read
-from tests.foreign import SMALLEST_CONTROLLER, build_relay, tampered
 
 NAMES = {
     "T_mot": "tqMot", "T_brake": "BrakeTorque", "slope": "grade", "v_0": "v0", "T_0": "tq_init", "omega_1": "nMot",

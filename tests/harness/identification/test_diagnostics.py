@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from fmutesting.together import together
 from scipy.signal import lfilter
 
 from driveline.harness.identification.diagnostics import (
@@ -41,7 +42,6 @@ from driveline.harness.identification.prediction import Predicted
 from driveline.harness.identification.priors import PRIORS
 from driveline.harness.identification.torque_loop import ANSWERS, FittedLoop, TorqueLoop
 from tests.harness.identification.simulated import NOISE, T_S, P, found, simulated
-from tests.together import together
 
 CAR = P._replace(g_T=1.0, g_L=1.0)
 

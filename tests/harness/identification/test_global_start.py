@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 import pytest
+from fmutesting.slow import slow
 
 from driveline.harness.identification.estimator import search
 from driveline.harness.identification.global_start import best_start
 from driveline.harness.identification.identify import COARSE, WIDE
 from driveline.harness.identification.prediction import Noise, Predictor
 from tests.harness.identification.simulated import BEHIND, NOISE, P, predictor, simulated
-from tests.slow import slow
 
 STARTS = [(1.87, 33.5, 0.0021), (0.077, 295.0, 0.12), (1.17, 35.0, 0.0045)]
 

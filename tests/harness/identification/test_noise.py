@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
+from fmutesting.together import together
 
 from driveline.harness.identification.noise import white_noise
 from driveline.harness.manoeuvres.prbs import binary_torque
 from driveline.harness.simulation.simulate import simulate
-from tests.harness.recordings.car import drive
-from tests.slow import slow
-from tests.together import together
+from packages.driverecords.tests.car import drive
 
 WITHIN = 0.1
 """What is asked for."""

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
+from fmutesting.together import together
 from scipy.integrate import solve_ivp
 
 from driveline.harness.identification.torque_loop import PARAMETERS, SQRT_2, FittedLoop, TorqueLoop, fitted
 from driveline.harness.manoeuvres.prbs import binary_torque, shift_register
 from driveline.harness.simulation.simulate import simulate
 from driverecords.source import RecordingError
-from tests.slow import slow
-from tests.together import together
 
 T_S = 0.002
 LOOP = TorqueLoop(tau=0.003, gain=1.02, offset=1.5, delay=0.0007)

@@ -16,8 +16,8 @@ from driveline.harness.loop.places import BUILD
 from fmublocks import origin
 from fmublocks.origin import origin_of
 from fmublocks.python.packaging import build
+from packages.toolground.tests.test_user_cache import DAMAGES
 from tests import ROOT
-from tests.harness.base.test_user_cache import DAMAGES
 from toolground.errors import UserError
 from toolground.user_cache import MOST_KEPT
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.foreign import RELAY, build_relay, tampered
 
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.loop.mapped_names import mappings, require_known
@@ -18,7 +19,6 @@ from fmuloop.interface import Interface
 from fmuloop.limits import USUAL_LIMITS
 from fmuloop.runs import run
 from fmuloop.wiring import fit
-from tests.foreign import RELAY, build_relay, tampered
 
 SHORT = replace(MANOEUVRES["tipin15"], duration=1.2)
 

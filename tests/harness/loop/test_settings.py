@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fmutesting.foreign import build_car
 
 from driveline.fmus.building.builds import build_fmus
 from driveline.harness.loop.arguments import ARGUMENTS
@@ -15,7 +16,6 @@ from driveline.harness.loop.settings import Changes, Settings, own_frequency, se
 from fmuloop.errors import WiringError
 from fmuloop.system import Scheme
 from tests import ROOT
-from tests.foreign import build_car
 
 
 def test_settings_are_given_as_a_record_a_plant_or_keyword_arguments_which_are_its_fields() -> None:

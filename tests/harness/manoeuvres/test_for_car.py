@@ -3,12 +3,12 @@
 from math import inf
 
 import numpy as np
+from fmutesting.together import together
 
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.composed import composed
 from driveline.harness.manoeuvres.for_car import for_car
 from driveline.harness.manoeuvres.parts import constant
-from tests.together import together
 
 
 @together("name", [*MANOEUVRES])

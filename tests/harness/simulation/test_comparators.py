@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 
 from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.parameter_files import read_parameters
@@ -24,7 +25,6 @@ from fmublocks.block.declaration import variables
 from fmublocks.python.packaging import build
 from fmuloop.errors import WiringError
 from tests.back_to_back import compare_block, random_inputs
-from tests.slow import slow
 from toolground.collected_warnings import warn_once
 
 TIPIN = MANOEUVRES["tipin15"]

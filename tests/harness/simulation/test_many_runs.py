@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 from threading import Lock
 
 import pytest
+from fmutesting.slow import slow
 
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
@@ -20,7 +21,6 @@ from fmuloop.errors import SimulationError
 from fmuloop.many_runs import many, run_many
 from fmuloop.system import Scheme
 from tests import ROOT
-from tests.slow import slow
 from toolground.atomic_files import complete
 from toolground.collected_warnings import warn_once
 from toolground.errors import UserError

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 
 from docs.studies import monolithic
 from driveline.harness.metrics.spectrum import band_rms
@@ -14,7 +15,6 @@ from driveline.models import two_mass_driveline, validation_vehicle
 from driveline.models.controller.causes import WRONG_LAUNCH
 from driveline.models.controller.supervision import FALLBACK
 from fmublocks.block.types import ContinuousBlock
-from tests.slow import slow
 
 V_0 = 15.0
 ONSET, END, DURATION = 0.3, 0.9, 1.5

@@ -4,6 +4,7 @@ import math
 from typing import Any, NamedTuple
 
 import pytest
+from fmutesting.recorded import computed
 
 from driveline.models.comparators import measured_speeds, speed_washout
 from driveline.models.comparators.speed_washout import Washout
@@ -13,7 +14,6 @@ from driveline.models.controller.supervised_controller import supervised
 from driveline.models.controller.trust import TrustState
 from fmublocks.block.declaration import variables
 from fmublocks.native.trace import leaves, trace
-from tests.fmus.native.recorded import computed
 from tests.models.controller.controllers import OTHER, OURS, ROLLING, run, shaken
 
 

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.bus import Node, frame_in
 
 from driveline.harness.commands.cli import main
 from driveline.harness.exchange.bus.database import messages, telegrams
 from driveline.harness.exchange.bus.log import frames
 from driveline.models.wheel_speed_can import FRAME, Parameters
 from fmublocks.description.terminal import FOLDER, TERMINAL
-from tests.fmus.bus import Node, frame_in
 
 P = Parameters()
 

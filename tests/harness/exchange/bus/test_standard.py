@@ -16,13 +16,13 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
+from fmutesting.bus import CONFIRM, Node, frame_in, operations
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from driveline.models.wheel_speed_can import FRAME
 from fmublocks.description.terminal import FOLDER
 from fmublocks.native.compiler import host_compiler
 from fmublocks.native.packaging import FMI_HEADERS
-from tests.fmus.bus import CONFIRM, Node, frame_in, operations
 
 STANDARD = Path(os.environ.get("FMI_LS_BUS", "."))
 HEADERS, EXAMPLES = STANDARD / "fmi-ls-bus" / "headers", STANDARD / "fmi-ls-bus-examples"

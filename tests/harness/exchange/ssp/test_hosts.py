@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.foreign import build_car
 
 from benchmarks.ssp_hosts import PRESENT, run_in
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from fmuloop.system import Scheme
-from tests.foreign import build_car
 
 STEPS = 1200
 TOLERANCE = 1e-9

@@ -11,6 +11,7 @@ import fmpy.ssp
 import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssd, read_ssv
+from fmutesting.foreign import build_car
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from driveline.harness.commands.cli import main
@@ -23,7 +24,6 @@ from driveline.harness.manoeuvres.signals import FlatSine, Held
 from driveline.models.manoeuvre import BLOCK, Input, State
 from fmuloop.wiring import fit
 from tests import ROOT
-from tests.foreign import build_car
 from toolground.errors import UserError
 
 SCHEMAS = {

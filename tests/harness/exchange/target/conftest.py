@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 
 import pytest
+from fmutesting.skipping import skipped_if_impossible
 
 from driveline.fmus.catalogue import CONTROLLERS
 from driveline.harness.exchange.target.controllers import Programs, programs
 from fmublocks.target.image import require_packages
-from tests.skipping import skipped_if_impossible
 
 
 @pytest.fixture(scope="session")

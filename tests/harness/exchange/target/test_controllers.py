@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmutesting.together import together
 
 from driveline.fmus.catalogue import CONTROLLERS, FMUS
 from driveline.harness.exchange.target import controllers, costs, record
@@ -23,7 +24,6 @@ from fmublocks.native.compiler import CompilerError
 from fmublocks.native.statements import SINGLE
 from fmublocks.target.link import Answer, TargetError
 from fmublocks.target.sources import target_sources
-from tests.together import together
 
 
 def test_the_image_and_its_description_are_written_into_the_folder(tmp_path, monkeypatch) -> None:

@@ -5,6 +5,7 @@ from shutil import copy
 from typing import Any
 
 import pytest
+from fmutesting.foreign import tampered
 
 import driveline
 from driveline.harness.loop.places import PLACES, PLANTS
@@ -19,7 +20,6 @@ from driveline.harness.studies.compare.compare import (
     write_tables,
 )
 from fmuloop import many_runs
-from tests.foreign import tampered
 from toolground.errors import UserError
 
 OURS = PLACES["controller"][0]

@@ -10,6 +10,8 @@ from shutil import copyfile
 
 import numpy as np
 import pytest
+from fmutesting.foreign import tampered
+from fmutesting.slow import slow
 
 import driveline
 from driveline.harness.commands.cli import main
@@ -29,8 +31,6 @@ from fmuloop.errors import WiringError
 from fmuloop.interface import Interface
 from fmuloop.system import Connection
 from tests import ROOT
-from tests.foreign import tampered
-from tests.slow import slow
 from toolground.errors import MissingExtra, UserError
 
 DATA = ROOT.parent / "shared" / "data"

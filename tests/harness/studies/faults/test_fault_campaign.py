@@ -8,6 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from fmutesting.foreign import tampered
 
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.loop.places import NO_DAMPING
@@ -24,7 +25,6 @@ from driveline.models.controller import supervision
 from fmuloop.errors import RunEnded
 from fmuloop.experiment import Experiment
 from fmuloop.runs import run
-from tests.foreign import tampered
 from toolground.collected_warnings import warn_once
 from toolground.errors import UserError
 

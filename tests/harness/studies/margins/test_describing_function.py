@@ -5,6 +5,7 @@ from math import inf, pi, sqrt
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.studies.margins import describing_function as backlash
@@ -25,7 +26,6 @@ from driveline.models import validation_vehicle
 from driveline.models.physics.backlash import dead_zone
 from fmublocks.block.types import ContinuousBlock
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
-from tests.slow import slow
 
 
 @pytest.mark.parametrize("amplitude", [0.5, 1.0, 1.01, 1.5, 4.0, 100.0])

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from fmutesting.slow import slow
 
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.studies.margins.averaged_messages import messages
@@ -21,7 +22,6 @@ from driveline.models.controller import T_S
 from fmublocks.block.operators import clip, sqrt
 from fmublocks.block.types import SampledBlock
 from tests.harness.studies.margins.contact import INTERVAL, growth, torque
-from tests.slow import slow
 
 CONTROLLERS = {name: fmu.block for name, fmu in EVERY.items() if isinstance(fmu.block, SampledBlock)}
 
