@@ -23,7 +23,7 @@ from tests import ROOT
 STUB = ROOT / "driveline" / "__init__.pyi"
 
 DECLARED = {
-    alias.asname or alias.name: (node.module, alias.name)
+    alias.asname or alias.name: (f"driveline.{node.module}" if node.level else node.module, alias.name)
     for node in ast.parse(STUB.read_bytes()).body
     if isinstance(node, ast.ImportFrom)
     for alias in node.names
@@ -45,9 +45,9 @@ def test_a_name_is_what_its_module_has_and_dir_gives_them() -> None:
     for name, (module, there) in DECLARED.items():
         found = getattr(driveline, name)
         if isinstance(found, ModuleType):
-            assert found is import_module(f"driveline.{module}.{there}"), name
+            assert found is import_module(f"{module}.{there}"), name
         else:
-            assert found is getattr(import_module(f"driveline.{module}"), there), name
+            assert found is getattr(import_module(str(module)), there), name
     assert dir(driveline) == sorted(DECLARED)
     given: dict[str, object] = {}
     exec("from driveline import *", given)
@@ -76,7 +76,7 @@ def docstring(name: str) -> str:
     found = getattr(driveline, name)
     if isinstance(found, ModuleType) or inspect.isclass(found) or inspect.isfunction(found):
         return found.__doc__ or ""
-    body = ast.parse(inspect.getsource(import_module(f"driveline.{DECLARED[name][0]}"))).body
+    body = ast.parse(inspect.getsource(import_module(str(DECLARED[name][0])))).body
     for node, below in pairwise(body):
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
             return str(below.value.value) if isinstance(below, ast.Expr) else ""  # type: ignore[attr-defined]

@@ -1,6 +1,5 @@
 """The file of an FMU: what it replaces."""
 
-import ast
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -9,17 +8,10 @@ import pytest
 from fmutesting.together import together
 
 from driveline.harness.commands.cli import main
-from fmublocks import release
 from fmublocks.archive import write_archive
 from toolground.atomic_files import write_text
 
 FILES = {"modelDescription.xml": b"<fmiModelDescription/>"}
-
-
-def test_an_installer_reads_the_version_without_running_anything() -> None:
-    assignments = [node for node in ast.parse(Path(release.__file__).read_text()).body if isinstance(node, ast.Assign)]
-    (version,) = (node for node in assignments if ast.unparse(node.targets[0]) == "VERSION")
-    assert ast.literal_eval(version.value) == release.VERSION
 
 
 def test_a_link_stays_one_and_its_file_is_replaced(tmp_path: Path) -> None:

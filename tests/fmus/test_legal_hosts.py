@@ -10,6 +10,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.model_description import ModelDescription
+from fmutesting import legal_hosts
 from fmutesting.legal_hosts import HOSTS, LASTS, LONG, LONG_IN_PYTHON, LONGER
 from fmutesting.libpython import with_libpython
 from fmutesting.together import together
@@ -37,7 +38,7 @@ INSTANTS = 7
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("legal") / "host"
-    source = Path(__file__).with_name("legal_hosts.c")
+    source = Path(legal_hosts.__file__).with_suffix(".c")
     libraries = ("-ldl", "-lm", "-pthread")
     subprocess.run([host_compiler(), *FLAGS, f"-I{FMI_HEADERS}", source, "-o", made, *libraries], check=True)
     return made

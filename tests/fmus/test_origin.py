@@ -1,10 +1,10 @@
 """What an FMU tells of its making, and what is built again for it."""
 
-import os
 from pathlib import Path
 
 import pytest
 
+from driveline.fmus.building import builds as catalogue_builds
 from driveline.fmus.building.builds import build_fmus, refreshed
 from driveline.fmus.catalogue import FMUS
 from driveline.fmus.origin import is_stale
@@ -20,7 +20,7 @@ NAME = "WheelSpeedCan"
 @pytest.fixture
 def later(monkeypatch: pytest.MonkeyPatch):
     """Makes the sources others than they were."""
-    return lambda: monkeypatch.setattr(origin, "sources_digest", lambda: "others")
+    return lambda: monkeypatch.setattr(origin, "sources_digest", lambda _: "others")
 
 
 def test_both_builds_tell_the_sources_that_made_them(built: Path, native: Path) -> None:
@@ -43,19 +43,6 @@ def test_what_is_missing_or_stale_is_built_and_nothing_else(tmp_path: Path, late
     assert is_stale(path)
     assert refreshed([NAME], tmp_path, "python") == [path]
     assert not is_stale(path)
-
-
-def test_the_digests_of_the_last_states_of_the_sources_are_kept(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(origin, "MOST_KEPT", 2)
-    monkeypatch.setattr(origin, "ROOT", tmp_path)
-    monkeypatch.setattr(origin, "user_cache", lambda: tmp_path)
-    source, digests = tmp_path / "block.py", []
-    for k in range(4):
-        source.write_text(f"x = {k}\n")
-        digests.append(origin.code_digest([source]))
-        newest = max((tmp_path / "sources").iterdir(), key=lambda path: path.stat().st_mtime)
-        os.utime(newest, (k, k))  # further from the next one than a clock tells apart
-    assert {path.read_text().split()[0] for path in (tmp_path / "sources").iterdir()} == set(digests[-2:])
 
 
 @pytest.mark.slow
@@ -106,7 +93,7 @@ def test_start_values_that_are_refused_now_are_named_and_the_file_is_kept(
     before = path.read_bytes()
     later()
     found = origin.Origin("older", values, frozenset())
-    monkeypatch.setattr(builds, "origin_of", lambda _: found)
+    monkeypatch.setattr(catalogue_builds, "origin_of", lambda _: found)
     with pytest.raises(BuildError, match=message):
         refreshed([NAME], tmp_path, "python")
     assert path.read_bytes() == before

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.fmus.description.test_model_description import (
+from tests.fmus.description.test_model_description import (  # noqa: F401
     test_every_quantity_has_unit_and_meaning_and_every_parameter_bounds,
     test_the_documentation_page_tells_of_every_variable,
     test_the_plants_have_the_same_inputs_and_outputs,

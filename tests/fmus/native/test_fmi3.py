@@ -21,7 +21,7 @@ from fmublocks.description.units import base_exponents
 from fmublocks.description.variables import interface
 from fmublocks.native.packaging import FMI_HEADERS
 from tests.fmus.native.any_build import *  # noqa: F403
-from tests.fmus.native.test_rates import (
+from tests.fmus.native.test_rates import (  # noqa: F401
     ramp,
     rates_of,
     test_a_derivative_that_is_no_number_is_refused_and_not_given_out,

@@ -126,8 +126,18 @@ def line_of(piece: str) -> int:
         ("nothing", "BLOCK = None\n", "native", "has no line `FMU = Fmu(BLOCK, stop_time=10.0)`"),
         ("leaves", "raise SystemExit(0)\n", "native", "cannot be run: SystemExit: 0"),
         ("json", EXAMPLE, "native", "there is a module called json"),
-        ("my_vehicle", EXAMPLE, "python", "MyVehicle has a native build only"),
-        ("my_vehicle", EXAMPLE, "both", "MyVehicle has a native build only"),
+        (
+            "my_vehicle",
+            EXAMPLE,
+            "python",
+            "line 10: driveline: the Python build of a block has the standard library and fmublocks alone",
+        ),
+        (
+            "my_vehicle",
+            EXAMPLE,
+            "both",
+            "line 10: driveline: the Python build of a block has the standard library and fmublocks alone",
+        ),
         ("my_vehicle", "import nonsense", "native", "my_vehicle.py, line 1: it cannot be run: ModuleNotFoundError: No"),
         ("my_vehicle", "\nFMU = (", "native", "my_vehicle.py, line 2: it cannot be run: SyntaxError"),
         (

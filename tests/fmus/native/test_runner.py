@@ -13,7 +13,7 @@ from fmublocks.block.types import SampledBlock
 from fmublocks.fmu import Fmu
 from fmublocks.native.compiler import FLAGS, host_compiler
 from fmublocks.native.packaging import c_sources
-from tests.models.block.test_runner import (
+from tests.models.block.test_runner import (  # noqa: F401
     START,
     Counter,
     Number,

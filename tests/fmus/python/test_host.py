@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from fmutesting import host
 from fmutesting.host import opened
 from fmutesting.slow import slow
 
@@ -16,7 +17,7 @@ from tests import copied_sources
 
 every_fmu = pytest.mark.parametrize("name", slow(FMUS, but=("MotorTorqueLoop",)))
 
-HOST = Path(__file__).parents[1] / "host.py"
+HOST = Path(host.__file__)
 
 
 def run_host(program, folder):

@@ -61,7 +61,7 @@ def test_what_is_up_to_date_is_taken_as_it_is(given: Path) -> None:
 def test_what_is_stale_stays_the_car_that_it_was_built_as(given: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = build(CAN.started_with({"i": 12.0}), given)
     before = path.read_bytes()
-    monkeypatch.setattr(origin, "sources_digest", lambda: "others")
+    monkeypatch.setattr(origin, "sources_digest", lambda _: "others")
     kept, new = refreshed_copy([CAN], given, "python")
     found = origin_of(new[0])
     assert found is not None

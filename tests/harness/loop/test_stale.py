@@ -25,7 +25,7 @@ def stale(both_built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setitem(MANOEUVRES, "prbs15", replace(MANOEUVRES["prbs15"], duration=0.1))
     folder = tmp_path / "stale"
     copytree(both_built, folder)
-    monkeypatch.setattr(origin, "sources_digest", lambda: "others")
+    monkeypatch.setattr(origin, "sources_digest", lambda _: "others")
     warn_once.cache_clear()
     return folder
 
@@ -130,7 +130,7 @@ def test_runs_from_python_name_them_once(stale: Path, caplog: pytest.LogCaptureF
     def end(k_d: float) -> float:
         from fmublocks import origin  # in a worker everything is imported anew
 
-        origin.sources_digest = lambda: "others"
+        origin.sources_digest = lambda _: "others"
         short = replace(MANOEUVRES["tipin15"], duration=0.01)
         return simulate(short, folder=stale, parameters={"controller.k_d": k_d})["time"][-1]
 

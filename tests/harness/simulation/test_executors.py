@@ -138,10 +138,10 @@ def test_what_is_warned_of_on_a_worker_is_told_here(cluster, caplog):
     def warns(case):
         import logging
 
-        logging.getLogger("driveline.somewhere").warning("case %s is odd", case)
+        logging.getLogger("fmuloop.somewhere").warning("case %s is odd", case)
 
     answers(warns, ["of the cluster"], cluster)
-    logged = [record.getMessage() for record in caplog.records if record.name == "driveline"]
+    logged = [record.getMessage() for record in caplog.records if record.name == "toolground"]
     assert logged == ["case of the cluster is odd"]
 
 
@@ -173,7 +173,7 @@ def test_what_takes_the_connection_and_says_nothing_is_no_scheduler(monkeypatch)
 
 def test_without_the_package_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(MissingExtra, match=r"the extra `cluster`.*driveline-damping\[cluster\]"):
+    with pytest.raises(MissingExtra, match=r"the extra `cluster`.*fmuloop\[cluster\]"):
         dask_executor("tcp://127.0.0.1:1").__enter__()
 
 

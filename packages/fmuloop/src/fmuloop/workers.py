@@ -23,7 +23,7 @@ from loky.backend import resource_tracker as lokys_tracker
 from loky.process_executor import BrokenProcessPool
 
 from toolground.atomic_files import note_unfinished, remove_unfinished
-from toolground.collected_warnings import LOG, CollectedWarnings
+from toolground.collected_warnings import CollectedWarnings
 from toolground.interruption import end_with, uninterrupted_children
 from toolground.plain_text import words
 from toolground.progress import hidden
@@ -169,7 +169,7 @@ def _begin(folder: Path, function: Callable[[Any], Any] | BatchedRuns, waiting: 
     end_with(waiting, tidy=lambda: rmtree(folder, ignore_errors=True))
     note_unfinished(folder)
     tempfile.tempdir = str(folder)  # a worker that is killed while a compiler runs removes nothing itself
-    collect_warnings().propagate = False
+    collect_warnings()
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
     kept = ExitStack()
     kept.enter_context(kept_loaded(folder))
@@ -178,10 +178,9 @@ def _begin(folder: Path, function: Callable[[Any], Any] | BatchedRuns, waiting: 
     gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
 
 
-def collect_warnings() -> logging.Logger:
+def collect_warnings() -> None:
     """In a worker: from now on warnings go with the answers."""
-    LOG.addHandler(_collected)
-    return LOG
+    logging.getLogger().addHandler(_collected)
 
 
 def _answer(batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:

@@ -93,7 +93,7 @@ def test_a_program_ends_with_a_process_that_is_killed(begun, code: str) -> None:
 def test_a_build_that_is_stopped_leaves_no_process_and_no_file(begun, tmp_path: Path, number: signal.Signals) -> None:
     stopped = f"from toolground.interruption import script\ndef main():{COMPILE}\nscript(main)"
     process, programs = begun(
-        stopped.replace("\nhost", "\n    host").replace("\nfrom driveline.fmus", "\n    from driveline.fmus")
+        stopped.replace("\nhost", "\n    host").replace("\nfrom fmublocks", "\n    from fmublocks")
     )
     process.send_signal(number)
     assert process.wait(60) == 128 + number
