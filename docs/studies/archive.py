@@ -8,6 +8,7 @@ those of FMPy with both FMUs of a block, which must be the same to the last bit.
 """
 
 import sys
+from importlib.metadata import version
 from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -23,7 +24,6 @@ from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
 from fmublocks.archive import write_archive
 from fmublocks.builds import FMI3_FOLDER, NATIVE_FOLDER
-from fmublocks.release import VERSION
 from fmuloop.interface import Interface
 from fmuloop.results import Results
 from fmuloop.system import Scheme
@@ -31,6 +31,8 @@ from toolground.errors import UserError
 from toolground.interruption import script
 
 from .data_file import ROOT
+
+VERSION = version("driveline-damping")
 
 NAME = f"driveline-damping-{VERSION}-fmus"
 PAGE = Path(__file__).with_name("archive_page.md")

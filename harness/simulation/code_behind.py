@@ -41,4 +41,5 @@ def _imported(path: Path, package: str) -> Iterator[str]:
         if isinstance(node, ast.ImportFrom):
             name = name_of(node, package)
             yield name
-            yield from (f"{name}.{alias.name}" for alias in node.names)
+            if name.partition(".")[0] in PACKAGES and (file := source_of(name)) and file.name == "__init__.py":
+                yield from (f"{name}.{alias.name}" for alias in node.names)

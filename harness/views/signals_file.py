@@ -150,7 +150,7 @@ def require_format(name: str) -> None:
     """
     package = FORMATS[name].package
     if package and not find_spec(package):  # it is loaded when it is needed
-        required(package, f"writing {FORMATS[name].ending.removeprefix('.')} files", "recordings")
+        required(package, f"writing {FORMATS[name].ending.removeprefix('.')} files", "driveline-damping[recordings]")
 
 
 def signals_path(stem: Path, format: str) -> Path:

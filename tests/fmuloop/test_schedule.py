@@ -53,7 +53,7 @@ def test_native_fmus_interpolate_torque_and_extrapolate_speed_and_others_hold_bo
 
 
 def test_a_loop_says_once_what_moves_and_what_is_held(built, caplog):
-    caplog.set_level(logging.INFO, "driveline")
+    caplog.set_level(logging.INFO, "fmuloop")
     with loaded(loop(folder=built, build="python")) as running:
         for _ in range(2):
             running.run(Experiment(0.01))

@@ -24,7 +24,7 @@ IN_C = {
         (f"fmi3{part}" for part in ("", "_instance", "_model_exchange", "_refused", "_terminal")),
         ("tests/fmus/native/test_fmi3.py", "tests/fmus/native/test_terminal.py"),
     ),
-    **dict.fromkeys(("lanes", "lane_loop"), ("tests/harness/cosimulation/test_lanes.py",)),
+    **dict.fromkeys(("lanes", "lane_loop"), ("tests/fmuloop/test_lanes.py",)),
     "frames": ("tests/fmus/native/test_terminal.py",),
     **dict.fromkeys(("model_exchange", "fmi2_model_exchange"), ("tests/fmus/native/test_model_exchange.py",)),
 }
@@ -78,15 +78,21 @@ def near(path: Path) -> list[str]:
 
 
 def room(path: Path) -> list[str]:
-    """Files of tests in the folder that belongs to that of a module, and in those above it, but not in tests/."""
-    here = Path("tests", path.parent)
-    return [test for folder in (here, *here.parents[:-2]) for test in tests() if Path(test).parent == folder]
+    """Files of tests in the folders that belong to that of a module, and in those above it, but not in tests/; those of
+    a package lie beside it, and where they need more than it in tests/ by its name."""
+    within = path.parent.relative_to(Path(*path.parts[:3])) if path.parts[0] == "packages" else path.parent
+    places = [Path("tests", within)]
+    if path.parts[0] == "packages":
+        places.insert(0, Path(*path.parts[:2], "tests", *within.parts[1:]))
+    folders = [folder for here in places for folder in (here, *here.parents) if len(folder.parts) > 1]
+    return [test for folder in folders for test in tests() if Path(test).parent == folder]
 
 
 @cache
 def tests() -> dict[str, set[str]]:
     """Files of tests, with the names in them that may be those of modules."""
-    paths = [path for path in ROOT.glob("tests/**/test_*.py") if path.parent != Path(__file__).parent]
+    every = (path for pattern in ("tests/**/test_*.py", "packages/*/tests/**/test_*.py") for path in ROOT.glob(pattern))
+    paths = [path for path in every if path.parent != Path(__file__).parent]
     both = r"[./](\w+)", r"(?=\b(\w+\.\w+))"
     return {
         path.relative_to(ROOT).as_posix(): set().union(*(_names(path, each) for each in both)) for path in sorted(paths)

@@ -8,12 +8,14 @@ from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
-import faults_in_c
-import faults_in_python
+from tests.mutation import faults_in_c, faults_in_python
 
 ROOT = Path(__file__).resolve().parents[2]
 
-CODE = ("models/**/*.py", "fmus/**/*.py", "packages/fmublocks/src/fmublocks/native/c/*.[ch]", "harness/**/*.py")
+CODE = (
+    *(f"{folder}/**/*.py" for folder in ("models", "fmus", "harness", "packages/*/src")),
+    "packages/fmublocks/src/fmublocks/native/c/*.[ch]",
+)
 """What is looked at; other C runs in no test that is compiled anew for each fault."""
 
 DRAWING = re.compile(r"harness/views/|figures?\.py$|/layout\.py$|/picture\.py$|_html\.py$")

@@ -22,6 +22,7 @@ import matplotlib.backends.backend_agg  # noqa: F401
 import pandas  # noqa: F401
 import pytest
 import scipy.signal  # noqa: F401
+from fmutesting import compiling
 from hypothesis import Phase, settings
 
 from tests.mutation.mutants import ROOT, Mutant, not_copied
@@ -52,6 +53,9 @@ WAITED = 300.0
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 """Of prctl(2)."""
 
+RUNNING = ("harness", *(f"packages/{name}/" for name in ("driverecords", "fmuloop", "fmucheck")))
+"""Folders of what FMUs are not made of."""
+
 Task = tuple[Mutant, Sequence[Sequence[str]], Sequence[str]]
 """A mutant, tests of which the fast ones are run, in rounds, and tests of which the slow ones are run after them."""
 
@@ -65,9 +69,10 @@ def prepare(folder: str) -> None:
         made.mkdir()
     os.environ["TMPDIR"] = str(temporary)
     tempfile.tempdir = None
-    os.environ["CC"] = str(run_path(str(ROOT / "tests" / "compiling.py"))["caching_compiler"](compiled) or "cc")
+    os.environ["CC"] = str(run_path(compiling.__file__)["caching_compiler"](compiled) or "cc")
     os.chdir(copy)
-    os.environ["PYTHONPATH"] = sys.path[0] = str(copy)
+    folders = [str(copy), str(copy / "tests/shared"), *map(str, copy.glob("packages/*/src"))]
+    os.environ["PYTHONPATH"], sys.path[:1] = os.pathsep.join(folders), folders
     os.environ["PYTHONDONTWRITEBYTECODE"], sys.dont_write_bytecode = "", False  # each run imports the same
     _prctl(PR_SET_CHILD_SUBREAPER, 1)
     _prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
@@ -146,7 +151,7 @@ def finder(mutant: Mutant, rounds: Sequence[Sequence[str]], slow: Sequence[str])
 
 
 def _finder(mutant: Mutant, tests: Sequence[str]) -> str | None:
-    same_fmus = mutant.file.startswith("harness") or not mutant.file.endswith(".py")
+    same_fmus = mutant.file.startswith(RUNNING) or not mutant.file.endswith(".py")
     while True:
         left = [*tests, *(f"--deselect={test}" for test in UNSOUND)]
         with mutant.applied(Path()):

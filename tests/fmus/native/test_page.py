@@ -81,7 +81,7 @@ def test_a_file_can_be_changed_and_read_again(tmp_path: Path) -> None:
 def test_fmus_of_one_name_do_not_overwrite_each_other(tmp_path: Path) -> None:
     file = tmp_path / "my_bus.py"
     file.write_text(OF_THE_BUS, encoding="utf-8")
-    with pytest.raises(BuildError, match="WheelSpeedCan is the name of several FMUs"):
+    with pytest.raises(BuildError, match="WheelSpeedCan is an FMU of the project"):
         list(build_fmus(["WheelSpeedCan", str(file)], tmp_path))
     del sys.modules["my_bus"]
     assert not list(tmp_path.rglob("*.fmu"))

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from fmutesting import host
 from fmutesting.libpython import with_libpython
 from fmutesting.skipping import skipped_if_impossible
 from fmutesting.together import together
 
 from fmublocks.native.compiler import host_compiler
 
-HOST = Path(__file__).parents[1] / "host.py"
+HOST = Path(host.__file__)
 OK = 0
 
 

@@ -83,8 +83,8 @@ def test_the_archive_holds_what_runs_and_nothing_else(built, name):
     assert "documentation/externalDependencies.txt" in names
     assert not [n for n in names if "builder" in n or "deploy" in n or "__pycache__" in n or n.endswith(".pyc")]
     carried = {Path(n).stem for n in names if "/models/" in n}
-    blocks = {fmu.module.split(".")[1] for fmu in FMUS.values()}
-    assert carried & blocks == {FMUS[name].module.split(".")[1]}
+    blocks = {fmu.module.split(".")[-1] for fmu in FMUS.values()}
+    assert carried & blocks == {FMUS[name].module.split(".")[-1]}
 
 
 @together("name", FMUS)

@@ -82,7 +82,7 @@ def test_a_run_that_a_stranger_ends_has_no_metrics_and_one_of_less_than_200_ms_n
 def test_a_stranger_that_hangs_ends_with_the_command(drive, tmp_path, number):
     start, temporary = drive
     running = start("simulate", build_stranger(tmp_path, IN_DO_STEP="for (;;) usleep(1000)"))
-    while not list(temporary.glob("driveline-*/driveline-*/binaries")):
+    while not list(temporary.glob("fmuloop-*/fmuloop-*/binaries")):
         time.sleep(0.05)
         assert running.poll() is None
     hosts = subprocess.run(["pgrep", "-P", str(running.pid)], capture_output=True, text=True, check=True).stdout.split()

@@ -31,7 +31,8 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.syspath_prepend(str(tmp_path))
     invalidate_caches()
     yield folder
-    sys.modules.pop("computing", None)
+    for name in [name for name in sys.modules if name.partition(".")[0] == "computing"]:
+        del sys.modules[name]
 
 
 @pytest.mark.parametrize(
