@@ -88,7 +88,7 @@ from fmuloop.loading import loaded as loaded
 from fmuloop.master import Loop as Loop
 
 # Errors: what can be mended; the message says what is wrong and what is allowed
-from toolground.errors import UserError as DrivelineError  # noqa: F401
+from .fmus.errors import DrivelineError as DrivelineError
 from fmuloop.errors import WiringError as WiringError
 from fmuloop.errors import SimulationError as SimulationError
 from toolground.errors import MissingExtra as MissingExtra

@@ -1,6 +1,10 @@
-"""What the user of car and controller files can mend."""
+"""What the user can mend; of all that, and of files of cars and controllers."""
 
 from fmublocks.errors import BuildError
+from toolground.errors import UserError
+
+DrivelineError = UserError
+"""Base of all errors that the user can mend; the command line prints them without a traceback."""
 
 
 class ParameterFileError(BuildError):

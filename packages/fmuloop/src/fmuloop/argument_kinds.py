@@ -29,7 +29,7 @@ def require_each(name: str, values: Iterable[Any], kind: Any, allowed: str) -> l
         WiringError: it is a single one, a text for example, whose letters would each be taken for a value; or one is
             of another kind.
     """
-    if isinstance(values, str | PathLike | kind) or not isinstance(values, Iterable):
+    if isinstance(values, str | PathLike | kind) or not isinstance(values, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise WiringError(f"{name} = {plain(repr(values), 60)}: it must be a list of {allowed}")
     found = list(values)
     for value in found:

@@ -12,7 +12,7 @@ from threading import local
 from typing import Any
 from uuid import uuid4
 
-from cloudpickle import dumps
+from cloudpickle import dumps  # pyright: ignore[reportUnknownVariableType]
 
 from toolground.collected_warnings import warn_once
 from toolground.errors import UserError
@@ -57,7 +57,7 @@ def dask_executor(address: str | None) -> Iterator[Executor | None]:
 
 async def _knock(address: str) -> None:
     """Raises TimeoutError where nothing answers, or what takes the connection says nothing; a client waits for ever."""
-    from distributed.comm.core import connect
+    from distributed.comm.core import connect  # pyright: ignore[reportUnknownVariableType]
 
     async with asyncio.timeout(TIMEOUT):
         await (await connect(address, timeout=TIMEOUT)).close()

@@ -118,13 +118,13 @@ def _many(
 
 
 def _require_batch(batch: int) -> None:
-    if not (isinstance(batch, int) and batch >= 1):
+    if not (isinstance(batch, int) and batch >= 1):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise UserError(f"batch = {batch!r}: it must be a whole number from 1 on")
 
 
 def require_workers(workers: int | None) -> None:
     """Refuses a number of workers that is none."""
-    if workers is not None and not (isinstance(workers, int) and workers >= 1):
+    if workers is not None and not (isinstance(workers, int) and workers >= 1):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise UserError(f"workers = {workers!r}: it must be a whole number from 1 on, or None")
 
 

@@ -17,7 +17,7 @@ from pickle import loads
 from shutil import rmtree
 from typing import Any, NamedTuple
 
-from cloudpickle import dumps
+from cloudpickle import dumps  # pyright: ignore[reportUnknownVariableType]
 from loky import ProcessPoolExecutor
 from loky.backend import resource_tracker as lokys_tracker
 from loky.process_executor import BrokenProcessPool

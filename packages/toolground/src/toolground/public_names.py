@@ -23,7 +23,7 @@ def public_names(package: str, file: str) -> tuple[Callable[[str], Any], Callabl
     @cache
     def places() -> dict[str, tuple[str, str]]:
         stub = Path(file).with_suffix(".pyi").read_text(encoding="utf-8")
-        lines = re.findall(r"^from (\S+) import (\w+) as (\w+)", stub, re.MULTILINE)
+        lines = re.findall(r"^from (\S+) import (\w+) as (\w+)$", stub, re.MULTILINE)
         return {name: (module, there) for module, there, name in lines}
 
     def find(name: str) -> Any:
