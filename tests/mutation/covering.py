@@ -6,13 +6,16 @@ from pathlib import Path
 
 from tests.mutation.mutants import ROOT, rooms
 
-CALLS_IN_C = "places", "calls", "same_words", "as_python", "rates", "no_step_to_nowhere", "content"
+NOWHERE = "packages/fmublocks/tests/native/test_no_step_to_nowhere.py"
+CALLS_IN_C = "places", "calls", "same_words", "as_python", "rates", "content"
 CALLS = (
     *(f"tests/fmus/native/test_{name}.py" for name in CALLS_IN_C),
+    NOWHERE,
     "tests/test_fuzz.py::test_odd_input_is_answered_as_promised[calls]",
 )
 INTEGRATOR = (
-    *(f"tests/fmus/native/test_{name}.py" for name in ("integrator", "rates", "no_step_to_nowhere")),
+    *(f"tests/fmus/native/test_{name}.py" for name in ("integrator", "rates")),
+    NOWHERE,
     "tests/fmus/test_stiff_plants.py",
 )
 IN_C = {
