@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable
 from pathlib import Path
+from shutil import copyfile
 
 import pytest
 
@@ -48,6 +49,18 @@ def test_what_was_damaged_is_made_again(made: tuple[Path, list[Path]], damage: s
     path.write_bytes(DAMAGES[damage](path.read_bytes()))
     assert ask(made) == CONTENT
     assert len(made[1]) == 2
+    assert ask(made) == CONTENT
+    assert len(made[1]) == 2
+
+
+@pytest.mark.parametrize("other", ["cache/other/file", "cache/key/other", "others/key/file"])
+def test_a_valid_entry_of_another_place_is_made_again(
+    made: tuple[Path, list[Path]], tmp_path: Path, other: str
+) -> None:
+    ask(made)
+    kept(tmp_path / other, lambda unfinished: unfinished.write_bytes(b"other"))
+    for ending in ("", ".digest"):
+        copyfile(f"{tmp_path / other}{ending}", f"{made[0]}{ending}")
     assert ask(made) == CONTENT
     assert len(made[1]) == 2
 

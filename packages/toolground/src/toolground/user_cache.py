@@ -1,4 +1,5 @@
-"""What is made once and kept for the next time, in the user's folder for that: each file with its digest beside it."""
+"""What is made once and kept for the next time, in the user's folder for that: each file with a seal beside it: its
+digest, and what it was made for."""
 
 import os
 import sys
@@ -62,16 +63,21 @@ def kept(path: Path, make: Callable[[Path], object]) -> Path:
 
 
 def seal(path: Path) -> None:
-    """Keeps the digest of a file of the cache that has just been made."""
-    write_text(digest(path), _seal(path))
+    """Keeps the seal of a file of the cache that has just been made."""
+    write_text(_sealed(path), _seal(path))
 
 
 def is_as_made(path: Path) -> bool:
     """Whether a file is there as it was when it was sealed. A library that is cut off would end the process that loads
     it, one that is damaged gives wrong numbers."""
     with suppress(OSError):
-        return _seal(path).read_bytes() == digest(path).encode()
+        return _seal(path).read_bytes() == _sealed(path).encode()
     return False
+
+
+def _sealed(path: Path) -> str:
+    """With its folder, which is named by all that it was made of: another entry with its seal is none of this place."""
+    return f"{digest(path)} {'/'.join(path.parts[-3:])}"
 
 
 def _seal(path: Path) -> Path:
