@@ -13,7 +13,7 @@ help: ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
 
 PACKAGES := $(patsubst %/pyproject.toml,%,$(wildcard packages/*/pyproject.toml))
-INSTALLED := pyproject.toml setup.py constraints.txt $(PACKAGES:=/pyproject.toml) packages/fmuloop/src/fmuloop/steps.c
+INSTALLED := pyproject.toml setup.py constraints.txt $(PACKAGES:=/pyproject.toml) packages/fmuloop/setup.py packages/fmuloop/src/fmuloop/steps.c
 FOLDERS := models fmus harness
 
 define environment

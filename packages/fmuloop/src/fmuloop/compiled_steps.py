@@ -1,7 +1,7 @@
 """The steps of the master as compiled code, steps.c: what is left beside the FMUs is next to nothing.
 
-The shared library is made when the project is installed, where there is a C compiler. Without it, or if
-its source has changed since, the loop runs in Python, with the same results.
+The shared library is made when the package is installed, where there is a C compiler. Without it, or if
+its source is another one now, the loop runs in Python, with the same results.
 """
 
 from collections.abc import Sequence
@@ -21,6 +21,7 @@ from ctypes import (
     c_void_p,
     cast,
 )
+from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -35,28 +36,28 @@ from .steps import Refusal
 
 SOURCE = Path(__file__).with_name("steps.c")
 
-CHANGES = (Path(__file__).parents[2] / "build_fmus.py").is_file()
-"""Whether it can: in a checkout."""
+SPEC = find_spec(f"{__package__}._steps")
+"""Of the library; None if there is none."""
 
 
-def _library() -> CDLL | None:
-    spec = find_spec(f"{__package__}._steps")
-    if not (spec and spec.origin):
+def library(path: str, source: Path) -> CDLL | None:
+    """The library, if it was made of the source that is there: by another one records are laid out otherwise."""
+    library = CDLL(path)
+    made_of = sha256(source.read_bytes()).hexdigest()
+    try:
+        return library if (c_char * len(made_of)).in_dll(library, "digest").raw == made_of.encode() else None
+    except ValueError:  # it does not tell
         return None
-    if CHANGES and SOURCE.stat().st_mtime > Path(spec.origin).stat().st_mtime:
-        return None
-    return CDLL(spec.origin)
 
 
-LIBRARY = _library()
+LIBRARY = library(SPEC.origin, SOURCE) if SPEC and SPEC.origin else None
 
 
 def why_not() -> str | None:
     """Why a library that was made does not run; None if it does or there is none."""
-    spec = find_spec(f"{__package__}._steps")
-    if LIBRARY or not (spec and spec.origin):
+    if LIBRARY or SPEC is None:
         return None
-    return f"{spec.origin} is older than {SOURCE.name}; the steps run in Python until the next `make setup`"
+    return f"{SPEC.origin} was made of another {SOURCE.name}; the steps run in Python until the next installation"
 
 
 TYPES = [c_double, c_int32, c_int64, c_bool]

@@ -28,6 +28,10 @@ struct call_record {
 
 EXPORT struct call_record *call_record;
 
+#ifdef DIGEST /* of this file, by setup.py: compiled_steps.py takes no library that was made of another */
+EXPORT const char digest[] = DIGEST;
+#endif
+
 /* CompiledLine in compiled_steps.py: Line in input_lines.py */
 typedef struct {
     double *sent;
