@@ -38,7 +38,7 @@ def read_record(path: Path) -> Mapping[str, Any]:
         what = f"{path} is a folder" if path.is_dir() else f"there is no file {path}"
         raise UserError("; ".join(filter(None, (what, near))))
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(path.read_text(encoding="utf-8") if path.stat().st_size else "")  # /proc/kmsg never ends
     except (ValueError, RecursionError) as error:
         raise UserError(f"{path} is no record of a result: it is not JSON") from error
     try:

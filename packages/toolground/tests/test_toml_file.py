@@ -1,11 +1,13 @@
 """TOML files of anybody: read as they are, or refused before they take long."""
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
 from fmutesting.together import together
 
+from toolground.digest import digest
 from toolground.file_limits import DEEPEST_TOML, LARGEST_TOML, MOST_DIGITS
 from toolground.toml_file import toml_entries
 
@@ -80,3 +82,11 @@ def test_what_is_no_file_is_said(tmp_path: Path) -> None:
     ):
         with pytest.raises(ValueError, match=f"^{message}$"):
             toml_entries(path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="of Linux")
+def test_a_file_of_no_size_that_waits_for_its_next_line_is_empty(tmp_path: Path) -> None:
+    (tmp_path / "empty").touch()
+    endless = Path("/proc/kmsg")
+    assert toml_entries(endless) == {}
+    assert digest(endless) == digest(tmp_path / "empty")

@@ -2,6 +2,7 @@
 
 import json
 import re
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from shutil import copytree
@@ -131,6 +132,7 @@ def test_what_cannot_be_made_again_is_refused(
         ("", "{0} is a folder; did you mean {0}/NAME.json?"),
         ("NAME.jsn", "there is no file {0}/NAME.jsn; did you mean {0}/NAME.json?"),
         ("NAME.csv", "{0}/NAME.csv is no record of a result: it is not JSON"),
+        *([("/proc/kmsg", "/proc/kmsg is no record of a result: it is not JSON")] if sys.platform == "linux" else []),
     ],
 )
 def test_what_is_no_record_is_refused(made: Path, capsys: Capsys, given: str, expected: str) -> None:

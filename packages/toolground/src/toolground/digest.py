@@ -2,12 +2,13 @@
 
 import hashlib
 from collections.abc import Iterable
+from io import BytesIO
 from pathlib import Path
 
 
 def digest(path: Path) -> str:
-    """Of the content of a file, which may be larger than the memory."""
-    with path.open("rb") as file:
+    """Of the content of a file, which may be larger than the memory; one of no size has none: /proc/kmsg never ends."""
+    with path.open("rb") if path.stat().st_size else BytesIO() as file:
         return f"sha256:{hashlib.file_digest(file, 'sha256').hexdigest()}"
 
 

@@ -35,7 +35,8 @@ def toml_entries(path: Path) -> dict[str, Any]:
     if (size := path.stat().st_size) > LARGEST_TOML:
         raise ValueError(f"{size / 1e6:.1f} MB is too long; at most {LARGEST_TOML / 1e6:g} MB")
     try:
-        text = path.read_bytes().decode("utf-8-sig")  # some editors of Windows begin a file with a mark
+        content = path.read_bytes() if size else b""  # /proc/kmsg, of no size, waits for the next line
+        text = content.decode("utf-8-sig")  # some editors of Windows begin a file with a mark
     except UnicodeDecodeError as error:
         raise ValueError(f"not TOML: {error}") from error
     if found := TOO_DEEP.search(text):
