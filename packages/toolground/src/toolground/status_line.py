@@ -1,4 +1,8 @@
-"""A line on the terminal while a command shows nothing else: that it is at work, and for how long."""
+"""A line on the terminal while a command shows nothing else: that it is at work, and for how long.
+
+Within `Console.status` of rich (15.0) a printed line that is longer than the terminal is wide becomes two, and one
+without an end, as a question, gets one; and each command would load rich, which takes longer than some commands.
+"""
 
 import os
 import sys
