@@ -69,7 +69,6 @@ def _processor_time() -> float:
 
 
 def main() -> None:
-    from loky import cpu_count
     from rich.console import Console
     from rich.table import Table
 
@@ -78,7 +77,7 @@ def main() -> None:
     )
     parser.add_argument("--runs", type=int, default=1000, help="on all cores (default: %(default)s)")
     args = parser.parse_args()
-    table = Table("", "plant", "s", "its steps, s", "ratio", title=f"{TIPIN.name}, {cpu_count()} cores")
+    table = Table("", "plant", "s", "its steps, s", "ratio", title=f"{TIPIN.name}, {many_runs.cores()} cores")
     for plant in PLANTS:
         whole, alone = further_runs(plant, 50)
         table.add_row("a further run", plant, f"{whole:.4f}", f"{alone:.4f}", f"{whole / alone:.2f}")

@@ -304,6 +304,18 @@ class Harmful:
         return Path.touch, (self.path,)
 
 
+def reader(pipe):
+    """As of a process that has ended."""
+
+    def read(size):
+        content = pipe.read(size)
+        if len(content) < size:
+            raise EOFError
+        return bytearray(content)
+
+    return read
+
+
 def framed(header):
     line = json.dumps(header).encode()
     return LENGTH.pack(len(line)) + line
@@ -336,7 +348,7 @@ def test_nothing_that_a_stranger_writes_among_the_answers_is_run(tmp_path, noted
 )
 def test_what_is_no_answer_to_the_question_is_forged(bytes_):
     with pytest.raises(InvalidAnswer):
-        receive(BytesIO(bytes_).read, lambda: 3)
+        receive(reader(BytesIO(bytes_)), 3)
 
 
 def test_a_stranger_without_a_binary_for_this_machine_tells_of_the_machine_and_not_of_the_run(tmp_path, native):
@@ -356,21 +368,21 @@ def test_an_answer_arrives_as_it_was_sent():
     send(Answer(error=WiringError("wrong")), pipe)
     send(Answer(error=ValueError("odd\033[31m")), pipe)
     pipe.seek(0)
-    assert receive(pipe.read, lambda: 0) == Answer(["one", "two"])
-    assert receive(pipe.read, lambda: 3) == Answer([], b"abc")
-    answers = [receive(pipe.read, lambda: 3) for _ in range(2)]
+    assert receive(reader(pipe), 0) == Answer(["one", "two"])
+    assert receive(reader(pipe), 3) == Answer([], b"abc")
+    answers = [receive(reader(pipe), 3) for _ in range(2)]
     assert [(type(answer.error), str(answer.error)) for answer in answers] == [
         (WiringError, "wrong"),
         (SimulationError, "ValueError: odd [31m"),
     ]
     with pytest.raises(EOFError):
-        receive(pipe.read, lambda: 0)
+        receive(reader(pipe), 0)
 
 
 @pytest.mark.parametrize(("length", "error"), [(10**8, EOFError), (10**8 + 1, InvalidAnswer)])
 def test_an_answer_that_is_longer_than_any_is_not_waited_for(length, error):
     with pytest.raises(error):
-        receive(BytesIO(LENGTH.pack(length)).read, lambda: 0)
+        receive(reader(BytesIO(LENGTH.pack(length))), 0)
 
 
 @pytest.mark.parametrize("own_session", ["", "setsid();"])

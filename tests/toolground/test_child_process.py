@@ -12,7 +12,8 @@ from time import monotonic, sleep
 import pytest
 from fmutesting.signals import heed_signals
 
-from toolground.child_process import output_of, run
+from toolground import child_process
+from toolground.child_process import Child, output_of, run, signal_name
 
 ROOT = Path(__file__).parents[2]
 
@@ -108,11 +109,11 @@ def test_what_takes_too_long_is_ended_with_what_it_has_begun(tmp_path: Path) -> 
     wait_until(lambda: gone(int((tmp_path / "child").read_text())))
 
 
-def test_a_program_gets_a_question_and_changes_of_the_environment(tmp_path: Path) -> None:
+def test_a_program_gets_changes_of_the_environment_and_nothing_to_read(tmp_path: Path) -> None:
     code = "import os, sys; print(os.environ['ASKED'], os.getcwd(), sys.stdin.buffer.read())"
-    question, changes = b"\xff?", {"ASKED": "so"}
-    done = run([sys.executable, "-c", code], environment=changes, text=False, question=question)
-    assert done.stdout.decode().split() == ["so", os.getcwd(), "b'\\xff?'"]
+    changes = {"ASKED": "so"}
+    done = run([sys.executable, "-c", code], environment=changes, text=False)
+    assert done.stdout.decode().split() == ["so", os.getcwd(), "b''"]
     assert run([sys.executable, "-c", code], tmp_path, changes).stdout.split() == ["so", str(tmp_path), "b''"]
 
 
@@ -120,3 +121,25 @@ def test_what_a_program_prints_is_given_only_if_it_does_not_fail() -> None:
     assert output_of(sys.executable, "-c", "print(' 1 2 ')") == "1 2"
     with pytest.raises(subprocess.CalledProcessError):
         output_of(sys.executable, "-c", "raise SystemExit(3)")
+
+
+def test_what_does_not_end_in_time_is_ended() -> None:
+    program = Child([sys.executable, "-c", "import time; print(1, flush=True); time.sleep(60)"])
+    assert program.read(1) == b"1"
+    assert not program.end(patience=0.2)
+    assert signal_name(-program.process.returncode) == "SIGKILL"
+
+
+def test_of_a_flood_no_more_is_taken_than_was_asked_for_and_some_pieces() -> None:
+    program = Child([sys.executable, "-c", "import os\nwhile True: os.write(1, bytes(2**20))"])
+    assert program.read(10) == bytes(10)
+    sleep(0.3)
+    assert program._pieces.qsize() == child_process.MOST_WAITING
+    program.end()
+    assert program._listener
+    program._listener.join(60.0)
+    assert not program._listener.is_alive()
+
+
+def test_signals_of_real_time_have_a_number() -> None:
+    assert [signal_name(number) for number in (signal.SIGSEGV, 41)] == ["SIGSEGV", "signal 41"]

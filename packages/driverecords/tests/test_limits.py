@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 import zlib
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from struct import pack
 from typing import Any
@@ -13,7 +12,7 @@ import numpy as np
 import pytest
 from fmutesting.together import together
 
-from driverecords import bounded_reading, text_file
+from driverecords import bounded_reading, format_detection, text_file
 from driverecords.drive import read_drive
 from driverecords.source import RecordingError
 from toolground import file_limits as limits
@@ -140,28 +139,42 @@ def test_a_container_of_a_log_that_unpacks_to_gigabytes_is_refused(tmp_path: Pat
     assert refusal(path, databases=databases) == "takes more than 1500 MB of memory to read"
 
 
-@pytest.mark.parametrize(("resource", "limit"), [(None, "SECONDS"), (bounded_reading.resource, "PATIENCE")])
-def test_what_takes_long_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, resource: Any, limit: str) -> None:
+def test_what_takes_long_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "drive.parquet"
     write_arrow(recording(), path)
-    monkeypatch.setattr(bounded_reading, "resource", resource)
-    monkeypatch.setattr(bounded_reading, limit, 0.01)
+    monkeypatch.setattr(bounded_reading, "PATIENCE", 0.01)
     assert refusal(path) == "takes more than 0.01 s to read"
 
 
-@pytest.mark.slow
-def test_without_limits_of_the_system_a_file_is_read_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "drive.parquet"
-    write_arrow(recording(), path)
-    monkeypatch.setitem(sys.modules, "resource", None)
-    monkeypatch.delattr(signal, "SIGXCPU", raising=False)
-    spec = spec_from_file_location(bounded_reading.__name__, bounded_reading.__file__)
-    assert spec is not None
-    assert spec.loader is not None
-    as_on_windows = module_from_spec(spec)
-    spec.loader.exec_module(as_on_windows)
-    read = as_on_windows.bounded(read_drive.__wrapped__)  # type: ignore[attr-defined]
-    np.testing.assert_array_equal(read(path).v, read_drive(path).v)
+@linux
+def test_what_would_never_end_is_refused_unread(tmp_path: Path) -> None:
+    endless, pipe = Path("/proc/kmsg"), tmp_path / "pipe"
+    os.mkfifo(pipe)
+    assert refusal(endless) == "is empty"
+    assert refusal(pipe) == "is no file; a file is needed"
+    log, _ = write_log(tmp_path, frames())
+    for database, problem in ((endless, "is empty"), (pipe, "is no file; a file is needed")):
+        with pytest.raises(RecordingError, match=f"^{database} {problem}$"):
+            read_drive(log, databases=[database])
+
+
+@linux
+def test_a_file_that_does_not_open_is_waited_for_so_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on a disk of a network that is gone: another process has been promised to be asked first."""
+    import fcntl
+
+    path = written(tmp_path, rows(3))
+    holder = os.open(path, os.O_RDWR)
+    before = signal.signal(signal.SIGIO, signal.SIG_IGN)
+    try:
+        fcntl.fcntl(holder, fcntl.F_SETLEASE, fcntl.F_WRLCK)
+        monkeypatch.setattr(format_detection, "SECONDS", 0.1)
+        assert refusal(path) == "takes more than 0.1 s to read"
+    finally:
+        os.close(holder)
+        signal.signal(signal.SIGIO, before)
+    monkeypatch.undo()
+    assert len(read_drive(path).time) == 3
 
 
 def test_a_damaged_file_is_named_and_no_copy_of_it_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -197,7 +210,7 @@ def test_large_texts_and_packed_files_are_read_by_a_process_of_their_own(
 ) -> None:
     path = written(tmp_path, table(recording()))
     monkeypatch.setattr(bounded_reading, "SMALL_TEXT", path.stat().st_size)
-    monkeypatch.setattr(bounded_reading, "_asked", lambda *_: pytest.fail("in a process of its own"))
+    monkeypatch.setattr(bounded_reading, "_alone", lambda *_: pytest.fail("in a process of its own"))
     whole = read_drive(path)
     monkeypatch.undo()
     monkeypatch.setattr(bounded_reading, "SMALL_TEXT", path.stat().st_size - 1)

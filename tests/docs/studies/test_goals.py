@@ -60,7 +60,7 @@ def test_what_is_reached_is_the_mean_magnitude_of_the_goals_own_runs_over_none()
 
 
 def test_the_monte_carlo_is_told_for_both_plants(native: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(many_runs, "_cores", lambda: 1)
+    monkeypatch.setattr(many_runs, "cores", lambda: 1)
     settings = Settings(folder=native.parent, build="native")
     cells = monte_carlo(1, {}, settings)
     assert len(cells) == len(MONTE_CARLO) == len(PLANTS)

@@ -68,7 +68,7 @@ def fmus(native_builder: Any, native: Path, tmp_path_factory: pytest.TempPathFac
 @pytest.fixture
 def command(fmus: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> Command:
     """Runs a command in this process, a search with one short run; without figures, which take seconds."""
-    monkeypatch.setattr(many_runs, "_cores", lambda: 1)
+    monkeypatch.setattr(many_runs, "cores", lambda: 1)
     monkeypatch.setattr(cost_evaluation, "RUNS", SHORT)
     for module, plot in FIGURES if "figures" not in request.node.name else ():
         monkeypatch.setattr(module, plot, lambda *args: [])

@@ -323,7 +323,7 @@ def end(seed):
     return simulate(MANOEUVRES["tipin15"], seed=seed, folder=Path({folder!r}), step_size=0.002)["plant.v"][-1]
 
 one, other = run_many(end, [1, 2], workers=2), run_many(end, [1, 2], workers=1)
-print(one == other, "loky" in sys.modules, *Path(tempfile.gettempdir()).iterdir())
+print(one == other, "fmuloop.workers" in sys.modules, *Path(tempfile.gettempdir()).iterdir())
 """
 
 

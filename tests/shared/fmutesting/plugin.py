@@ -50,10 +50,10 @@ def read_here(monkeypatch: pytest.MonkeyPatch) -> None:
     """Recordings are read by the process of the tests; one of their own imports packages for a second, each time."""
     from driverecords import bounded_reading
 
-    def asked(_: Path, question: Any) -> Any:
+    def alone(_: Path, *question: Any) -> Any:
         return pickle.loads(pickle.dumps(bounded_reading.outcome(*pickle.loads(pickle.dumps(question)))))
 
-    monkeypatch.setattr(bounded_reading, "_asked", asked)
+    monkeypatch.setattr(bounded_reading, "_alone", alone)
 
 
 @pytest.fixture

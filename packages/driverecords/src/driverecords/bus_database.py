@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from toolground.optional_packages import required
 from toolground.plain_text import plain
 
-from .source import RecordingError
+from .source import RecordingError, require_content
 from .text_file import encoding_of
 
 
@@ -89,8 +89,7 @@ def without_value(signal: Any) -> list[float]:
 
 def _messages(path: Path) -> Sequence[Any]:
     cantools = required("cantools", "decoding the frames of a bus", "driverecords[formats]")
-    if not path.is_file():
-        raise RecordingError(f"there is no database {path}")
+    require_content(path, "database")
     try:
         text = path.read_text(encoding=encoding_of(path))
         if text.lstrip().startswith("<"):

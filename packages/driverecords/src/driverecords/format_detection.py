@@ -1,15 +1,19 @@
 """Which kind of file a recording is, by its content and not by its name."""
 
 from collections.abc import Sequence
+from concurrent.futures import Future
 from pathlib import Path
+from threading import Thread
 from typing import Any
 from zipfile import BadZipFile, ZipFile
+
+from toolground.file_limits import SECONDS
 
 from .arrow_file import FEATHER, PARQUET, ArrowFile
 from .bus_log import BusLog
 from .bus_readers import LOGS, LOOKED_AT, kind_of
 from .mdf_file import MARKS, MdfFile
-from .source import RecordingError, Source
+from .source import RecordingError, Source, require_content
 from .text_file import TextFile
 
 KINDS = dict.fromkeys(MARKS, MdfFile) | {PARQUET: ArrowFile, FEATHER: ArrowFile}
@@ -56,9 +60,7 @@ def opened(path: Path, databases: Sequence[Path] = ()) -> Source:
             there is one and it is none.
         MissingExtra: the package that reads this kind is not installed.
     """
-    if not path.is_file():
-        what = "a folder" if path.is_dir() else "no file" if path.exists() else ""
-        raise RecordingError(f"{path} is {what}; a file is needed" if what else f"there is no recording {path}")
+    require_content(path)
     begin = _begin(path)
     kind = _kind(begin)
     if kind is BusLog:
@@ -89,8 +91,25 @@ def is_text(path: Path) -> bool:
 
 
 def _begin(path: Path) -> bytes:
-    with path.open("rb") as file:
-        return file.read(LOOKED_AT)
+    """The first bytes, for which a disk of a network that is gone lets wait for ever.
+
+    Raises:
+        RecordingError: they do not come.
+    """
+    begin: Future[bytes] = Future()
+
+    def read() -> None:
+        try:
+            with path.open("rb") as file:
+                begin.set_result(file.read(LOOKED_AT))
+        except OSError as error:
+            begin.set_exception(error)
+
+    Thread(target=read, daemon=True).start()
+    try:
+        return begin.result(SECONDS)
+    except TimeoutError:
+        raise RecordingError(f"{path} takes more than {SECONDS} s to read") from None
 
 
 def _kind(begin: bytes) -> Any:

@@ -31,6 +31,18 @@ class RecordingError(UserError):
         self.problem = problem
 
 
+def require_content(path: Path, what: str = "recording") -> None:
+    """Refuses what is no regular file with content.
+
+    A pipe that nobody writes never ends, nor does /proc/kmsg: a regular file of no size that waits for the next line.
+    """
+    if not path.is_file():
+        kind = "a folder" if path.is_dir() else "no file" if path.exists() else ""
+        raise RecordingError(f"{path} is {kind}; a file is needed" if kind else f"there is no {what} {path}")
+    if not path.stat().st_size:
+        raise RecordingError(f"{path} is empty")
+
+
 class Where(NamedTuple):
     """What messages say of where a value is in its file.
 

@@ -37,7 +37,7 @@ def started(otherwise: str = "pass") -> Link:
 
 
 def process_of(running: Link) -> int:
-    return running._process.pid
+    return running._child.process.pid
 
 
 def is_alive(pid: int) -> bool:
@@ -106,7 +106,7 @@ def test_nothing_is_left_when_the_one_that_started_it_is_killed() -> None:
 import sys, time
 from fmublocks.target.link import Link
 running = Link([sys.executable, "-c", {PROGRAM.replace("OTHERWISE", "time.sleep(60)")!r}], "the target")
-print(running._process.pid, flush=True)
+print(running._child.process.pid, flush=True)
 time.sleep(60)
 """
     with subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True) as starter:

@@ -63,8 +63,8 @@ def missing_symbols(fmu: Unpacked) -> Iterator[str]:
     linker = shutil.which("ldd")
     if not linker or not binary.is_file():
         return
-    done = run([linker, "-r", binary], environment={"LC_ALL": "C"}, timeout=LONGEST, text=False)
-    said = (done.stdout + done.stderr).decode(errors="replace")
+    done = run([linker, "-r", binary], environment={"LC_ALL": "C"}, timeout=LONGEST)
+    said = done.stdout + done.stderr
     if absent := list(dict.fromkeys(ABSENT.findall(said))):  # which may have what else is missing
         yield f"{binary.name} needs {', '.join(absent)}, which is not here, nor in the FMU"
         return

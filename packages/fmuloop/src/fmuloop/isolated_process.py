@@ -1,27 +1,24 @@
-"""An isolated process for FMUs that are not ours: one that exits, crashes or hangs there is a message here."""
+"""An isolated process for FMUs that are not ours: one that exits, crashes or hangs there is a message here.
 
-import os
+A question is a function and its arguments, pickled; the answer is plain data. Whatever FMUs print is thrown away, and
+nothing they do reaches the process that asks.
+"""
+
 import pickle
-import signal
-import subprocess
-import sys
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from math import isfinite
 from mmap import mmap
 from pathlib import Path
-from queue import Empty, Queue
-from tempfile import TemporaryDirectory
-from threading import Thread
 from time import monotonic
-from typing import Any
+from typing import Any, BinaryIO
 
-from .call_trace import AT_START, FUNCTIONS, CallRecord
+from toolground.child_process import POLL, signal_name
+from toolground.interpreter import Interpreter
+from toolground.progress import hidden
+
+from .call_trace import AT_START, FUNCTIONS, CallRecord, rest, share
 from .errors import InstantiationError, SimulationError, UnpackedFolderError
-from .process_answers import Answer, Bytes, InvalidAnswer, receive
-
-POLL = 0.1
-"""Seconds between two readings of the call trace."""
+from .process_answers import Answer, Bytes, InvalidAnswer, receive, send
 
 PATIENCE = 5.0
 """Seconds in which it must have ended when it is no longer needed."""
@@ -46,26 +43,14 @@ class IsolatedProcess:
         """
         self._names = names
         self._longest_call = longest_call
-        self._files = TemporaryDirectory(prefix="fmuloop-", dir=folder, ignore_cleanup_errors=True)
-        self.folder = Path(self._files.name)
+        self._was_killed = self._has_invalid = False
+        self._process = Interpreter(_answer_questions, folder)
+        self.folder = self._process.folder
         page = self.folder / "call_trace"
         page.write_bytes(bytes(PAGE))
         with page.open("r+b") as file:
             self._memory = mmap(file.fileno(), PAGE)
-        start = f"import sys; sys.path[:] = {sys.path!r}; from {__package__}.process_host import main; main()"
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", start, str(page)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            bufsize=0,  # a thread that waits in a buffered reader does not let the interpreter end
-            env=os.environ | dict.fromkeys(("TMPDIR", "TEMP", "TMP"), self._files.name),
-            start_new_session=True,
-        )
-        self._was_killed = self._has_invalid = False
-        self._size = 0
-        self._answers: Queue[Answer | None] = Queue()
-        Thread(target=self._listen, daemon=True).start()
+        self._process.send(pickle.dumps(page))
 
     def ask(self, function: Callable[..., Any], *arguments: Any) -> list[str]:
         """The texts that a function, one that can be imported, answers in the process; none for None.
@@ -73,7 +58,7 @@ class IsolatedProcess:
         Raises:
             SimulationError: an FMU has ended the process, or a call lasts too long; of no more use then.
             UnpackedFolderError: an FMU cannot be instantiated, and the folder has a name that some cannot take.
-            Exception: what the function raised, if it is one of `harness.cosimulation.process_answers.ERRORS`.
+            Exception: what the function raised, if it is one of `process_answers.ERRORS`.
         """
         try:
             return list(self._asked(function, arguments, 0, None).texts)
@@ -100,88 +85,60 @@ class IsolatedProcess:
     ) -> Answer:
         if not self.alive:
             raise SimulationError(self._ended())
-        self._size = size
         try:
-            self._send(pickle.dumps((function, arguments), pickle.HIGHEST_PROTOCOL))
-            answer = self._wait(watch)
+            self._process.send(pickle.dumps((function, arguments), pickle.HIGHEST_PROTOCOL))
+            answer = receive(self._attentive(watch), size)
+        except (InvalidAnswer, EOFError) as end:
+            self._has_invalid = isinstance(end, InvalidAnswer)
+            self._end(0.0 if self._has_invalid else PATIENCE)
+            raise SimulationError(self._ended()) from None
         except BaseException:
-            self._kill()  # an answer that comes later would be taken for that to the next question
+            self._end()  # an answer that comes later would be taken for that to the next question
             raise
-        if answer is None:
-            self._kill(0.0 if self._has_invalid else PATIENCE)
-            raise SimulationError(self._ended())
         if answer.error is not None:
             raise answer.error
         return answer
 
-    def _send(self, question: bytes) -> None:
-        assert self._process.stdin is not None
-        left = memoryview(question)
-        with suppress(BrokenPipeError):
-            while left:
-                left = left[self._process.stdin.write(left) :]
-
-    def _wait(self, watch: Callable[[float], None] | None) -> Answer | None:
+    def _attentive(self, watch: Callable[[float], None] | None) -> Callable[[int], bytearray]:
+        """What reads so many bytes of an answer, and meanwhile looks at where the FMUs are."""
         seen, since = self._at(), monotonic()
-        while True:
-            alive = self.alive  # before the answers are read: the last one may just have come
-            with suppress(Empty):
-                return self._answers.get(timeout=POLL)
-            if not alive:
-                return None  # what it has begun and left behind may hold the pipe open
-            now = self._at()
-            if now != seen:
-                seen, since = now, monotonic()
-            elif now[1] and monotonic() - since > self._longest_call:
-                raise SimulationError(f"{self._call('did not return from')} within {self._longest_call:g} s")
-            if watch and now[2] >= 0.0:
-                watch(now[2])
+
+        def read(size: int) -> bytearray:
+            nonlocal seen, since
+            while True:
+                try:
+                    return self._process.read(size, POLL)
+                except TimeoutError:
+                    now = self._at()
+                if now != seen:
+                    seen, since = now, monotonic()
+                elif now[1] and monotonic() - since > self._longest_call:
+                    raise SimulationError(f"{self._call('did not return from')} within {self._longest_call:g} s")
+                if watch and now[2] >= 0.0:
+                    watch(now[2])
+
+        return read
 
     def close(self) -> None:
         """Ends it and removes its files."""
-        assert self._process.stdin is not None
-        self._process.stdin.close()
-        self._kill(PATIENCE)
-        self._files.cleanup()
-
-    def _listen(self) -> None:
-        """Passes on answers until the process has ended, or has written what is none."""
-        assert self._process.stdout is not None
-        try:
-            while True:
-                self._answers.put(receive(self._process.stdout.read, lambda: self._size))
-        except InvalidAnswer:
-            self._has_invalid = True
-        except (EOFError, OSError, MemoryError):
-            pass
-        self._answers.put(None)
+        self._end(PATIENCE)
 
     @property
     def alive(self) -> bool:
-        return self._process.poll() is None
+        return self._process.alive
 
-    def _kill(self, patience: float = 0.0) -> None:
-        """Ends it, unless it ends by itself in so many seconds, and all that it has started."""
-        try:
-            self._process.wait(patience)
-        except subprocess.TimeoutExpired:
-            self._was_killed = True
-        if sys.platform == "win32":
-            self._process.kill()
-        else:
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
+    def _end(self, patience: float = 0.0) -> None:
+        self._was_killed |= not self._process.end(patience)
 
     def _ended(self) -> str:
         if self._has_invalid:
             return self._call("wrote among the answers of the process that it ran in, in")
         if self._was_killed:
             return self._call("gave no more answers and was ended, in")
-        code = self._process.returncode
+        code = self._process.process.returncode
         if code >= 0:
             return self._call(f"ended the process that it ran in, with exit code {code}, in")
-        return self._call(f"crashed ({_name(-code)}) in")
+        return self._call(f"crashed ({signal_name(-code)}) in")
 
     def _at(self) -> tuple[int, int, float, int]:
         """What is noted; no call, if an FMU has written over it."""
@@ -198,9 +155,27 @@ class IsolatedProcess:
         return f"{self._names[instance]} {what} {FUNCTIONS[function - 1]}{when}"
 
 
-def _name(number: int) -> str:
-    """Of a signal; those of real time have none."""
+# what follows runs in the other process
+
+
+def _answer_questions(questions: BinaryIO, answers: BinaryIO) -> None:
+    """Answers until nobody asks any more; first it is told where its calls are noted."""
+    with pickle.load(questions).open("r+b") as page:
+        share(mmap(page.fileno(), 0))
+    while True:
+        try:
+            function, arguments = pickle.load(questions)
+        except EOFError:
+            return
+        answer = _answer(function, arguments)
+        rest()  # writing the answer may take longer than a call may
+        send(answer, answers)
+
+
+def _answer(function: Callable[..., Any], arguments: tuple[Any, ...]) -> Answer:
     try:
-        return signal.Signals(number).name
-    except ValueError:
-        return f"signal {number}"
+        with hidden():
+            value = function(*arguments)
+    except Exception as error:
+        return Answer(error=error)
+    return Answer(content=value) if isinstance(value, Bytes) else Answer(texts=value or ())

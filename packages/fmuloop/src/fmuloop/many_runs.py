@@ -10,13 +10,13 @@ times = run_many(settling, np.linspace(0.0, 5.0, 1000))
 ```
 """
 
+import os
 from collections.abc import Callable, Iterable, Iterator, MutableMapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import islice
 from pathlib import Path
 from pickle import loads
-from tempfile import TemporaryDirectory
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 AHEAD = 4
 """Batches a process that are submitted at a time, the one at work among them."""
+
+QUOTA = Path("/sys/fs/cgroup/cpu.max")
+"""Of a container: how much of a period it may compute on all cores together; "max" is no limit (cgroups, version 2)."""
 
 Case = TypeVar("Case")
 Answer = TypeVar("Answer")
@@ -71,7 +74,7 @@ def run_many(
     require_workers(workers)
     every, answers = list(cases), []
     todo = every if known is None else [case for case in dict.fromkeys(every) if case not in known]
-    count = min(workers or _cores(), max(len(todo), 1))
+    count = min(workers or cores(), max(len(todo), 1))
     _require_batch(batch)
     if in_lanes := _goes_in_lanes(len(every) if known is None else MANY):
         batch = max(batch, min(MANY, -(-len(todo) // count)))
@@ -100,7 +103,7 @@ def many(
     """
     require_workers(workers)
     _require_batch(batch)
-    with _many(function, workers or _cores(), executor, batch, _goes_in_lanes(batch)) as answered:
+    with _many(function, workers or cores(), executor, batch, _goes_in_lanes(batch)) as answered:
         yield answered
 
 
@@ -128,10 +131,13 @@ def require_workers(workers: int | None) -> None:
         raise UserError(f"workers = {workers!r}: it must be a whole number from 1 on, or None")
 
 
-def _cores() -> int:
-    from loky import cpu_count  # only those who need processes load it
-
-    return cpu_count()
+def cores() -> int:
+    """That this process may use; a container has a share of the time of all."""
+    number = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    with suppress(OSError, ValueError):
+        quota, period = map(int, QUOTA.read_text(encoding="ascii").split())
+        number = min(number, -(-quota // period))
+    return number
 
 
 @contextmanager
@@ -157,19 +163,18 @@ def _in_workers(
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     from .workers import Lost, Workers, in_order
 
-    with TemporaryDirectory(prefix="fmuloop-", ignore_cleanup_errors=True) as folder:
-        workers = Workers(function, count, Path(folder))
+    workers = Workers(function, count)
 
-        def answered(cases: Iterable[Case]) -> Iterator[Answer]:
-            for each in in_order(workers.submit, batched(cases, batch), AHEAD * count, workers.mend):
-                yield from _gathered(each, workers.submit_alone, Lost)
+    def answered(cases: Iterable[Case]) -> Iterator[Answer]:
+        for each in in_order(workers.submit, batched(cases, batch), AHEAD * count):
+            yield from _gathered(each, workers.submit, Lost)
 
-        unfinished = True
-        try:
-            yield answered
-            unfinished = False
-        finally:
-            workers.end(unfinished)
+    unfinished = True
+    try:
+        yield answered
+        unfinished = False
+    finally:
+        workers.end(unfinished)
 
 
 @contextmanager
@@ -199,24 +204,26 @@ def _gathered(
     submitted: "Submitted",
     submit: "Callable[[Sequence[Any]], Future[Any]]",
     loss: type[Exception] | tuple[type[Exception], ...],
+    again: bool = False,
 ) -> Iterator[Any]:
     """The answers of a worker, whose warnings are logged here.
 
     Args:
         submitted: cases, and the future of what `answered_by` gives for them.
         submit: what is left of them, where one raised an error or ended its process.
-        loss: is raised where the cases ended their process each time, whatever others did.
+        loss: is raised where the cases ended their process.
+        again: whether they did before.
     """
     batch, future = submitted.batch, submitted.future
     while batch:
         try:
             answers = future.result()
         except loss as error:
-            if len(batch) == 1:
+            if again:
                 text = f"a process crashed in {_text(batch[0])}, and again when that was run once more"
                 raise SimulationError(text) from error
             for case in batch:
-                yield from _gathered(submitted._replace(batch=[case], future=submit([case])), submit, loss)
+                yield from _gathered(submitted._replace(batch=[case], future=submit([case])), submit, loss, again=True)
             return
         except CancelledError as error:
             raise SimulationError(f"what runs the cases has gone before {_text(batch[0])}") from error

@@ -32,10 +32,6 @@ ERRORS: dict[str, type[Exception]] = {
 LENGTH = Struct("<Q")
 """Of the JSON."""
 
-AT_ONCE = 2**16
-"""Bytes that are read at once; memory is taken for those alone that have come."""
-
-
 Bytes = bytes | bytearray | memoryview
 
 
@@ -63,41 +59,30 @@ def send(answer: Answer, pipe: BinaryIO) -> None:
     pipe.flush()
 
 
-def receive(read: Callable[[int], bytes], expected_size: Callable[[], int]) -> Answer:
+def receive(read: Callable[[int], bytearray], expected_size: int) -> Answer:
     """Reads an answer.
 
     Args:
-        read: gives so many bytes or fewer, none at the end.
-        expected_size: how many bytes are asked for when the answer comes; those of an error are none.
+        read: gives so many bytes.
+        expected_size: how many bytes are asked for; those of an error are none.
 
     Raises:
-        EOFError: there are no more answers.
         InvalidAnswer: it is none.
     """
-    (length,) = LENGTH.unpack(_exactly(read, LENGTH.size))
+    (length,) = LENGTH.unpack(read(LENGTH.size))
     if length > LARGEST_ANSWER:
         raise InvalidAnswer
     try:
-        header = json.loads(_exactly(read, length))
+        header = json.loads(read(length))
         texts, comes, error = header["texts"], header["size"], header["error"]
     except (ValueError, KeyError, TypeError, RecursionError) as wrong:
         raise InvalidAnswer from wrong
     if not _are_texts(texts) or not (error is None or (_are_texts(error) and len(error) == 2)):
         raise InvalidAnswer
-    size = 0 if error else expected_size()
+    size = 0 if error else expected_size
     if comes != size:
         raise InvalidAnswer
-    return Answer(texts, _exactly(read, size), error and _raised(*error))
-
-
-def _exactly(read: Callable[[int], bytes], size: int) -> bytearray:
-    content = bytearray()
-    while len(content) < size:
-        some = read(min(AT_ONCE, size - len(content)))
-        if not some:
-            raise EOFError
-        content += some
-    return content
+    return Answer(texts, read(size), error and _raised(*error))
 
 
 def _are_texts(value: Any) -> bool:

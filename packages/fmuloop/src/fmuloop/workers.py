@@ -1,6 +1,5 @@
 """Processes that share cases, and what a process does that has been sent one, here or on a cluster."""
 
-import atexit
 import gc
 import logging
 import os
@@ -8,23 +7,20 @@ import sys
 import tempfile
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future
-from contextlib import ExitStack
-from itertools import accumulate
-from multiprocessing import resource_tracker
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from pickle import loads
-from shutil import rmtree
-from typing import Any, NamedTuple
+from pickle import load, loads
+from struct import Struct
+from threading import local
+from traceback import format_exc
+from typing import Any, BinaryIO, NamedTuple
 
 from cloudpickle import dumps  # pyright: ignore[reportUnknownVariableType]
-from loky import ProcessPoolExecutor
-from loky.backend import resource_tracker as lokys_tracker
-from loky.process_executor import BrokenProcessPool
 
 from toolground.atomic_files import note_unfinished, remove_unfinished
 from toolground.collected_warnings import CollectedWarnings
-from toolground.interruption import end_with, uninterrupted_children
+from toolground.interpreter import Interpreter
+from toolground.interruption import uninterrupted_children
 from toolground.plain_text import words
 from toolground.progress import hidden
 
@@ -33,75 +29,64 @@ from .row_file import keep_freed
 from .runs import kept_loaded
 from .side_by_side import BatchedRuns, outcomes
 
-Lost = BrokenProcessPool
-"""Is raised where the process of a case was lost."""
-
-
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
 """The environment of a worker: the cores are shared by processes, and threads of linear algebra that wait for each
 other take five times what they compute."""
 
+PATIENCE = 5.0
+"""Seconds in which a worker must have ended when it is no longer needed."""
+
+LENGTH = Struct("<Q")
+"""Of an answer."""
+
+
+class Lost(Exception):
+    """The process of cases has ended before it answered."""
+
+
+class WorkerTraceback(Exception):
+    """Where in the worker an error was raised: the cause of the error here."""
+
 
 class Workers:
-    """New interpreters (FMUs that run Python do not survive a fork); one that is lost is replaced.
+    """New interpreters (FMUs that run Python do not survive a fork), each asked by a thread; one that is lost is
+    replaced."""
 
-    Args:
-        function: of a case.
-        count: how many.
-        folder: for what they unpack and note, and for all their temporary files; who gives it removes it.
-    """
-
-    def __init__(self, function: Callable[[Any], Any] | BatchedRuns, count: int, folder: Path) -> None:
-        self._count = count
-        self._folder = folder
-        self._given = folder, function, os.getpid()
-        for tracker in (resource_tracker, lokys_tracker):  # beginning the first lets interruptions through again
-            with uninterrupted_children():
-                tracker.ensure_running()
-        self._begin()
+    def __init__(self, function: Callable[[Any], Any] | BatchedRuns, count: int) -> None:
+        """
+        Args:
+            function: of a case.
+            count: how many.
+        """
+        self._function = dumps(function)
+        self._threads = ThreadPoolExecutor(count)
+        self._here = local()
+        self._begun: list[Interpreter] = []
+        self._ended = False
 
     def submit(self, batch: Sequence[Any]) -> "Future[Any]":
         """The future of what `answered_by` gives for the cases."""
+        with uninterrupted_children():
+            return self._threads.submit(self._answers, batch)
+
+    def _answers(self, batch: Sequence[Any]) -> Any:
+        worker = getattr(self._here, "worker", None)
+        if worker is None or worker.closed:
+            worker = Interpreter(_answer_cases, environment=ONE_THREAD, stderr=None, tidy=remove_unfinished)
+            self._here.worker = worker
+            self._begun.append(worker)
+            if self._ended:
+                worker.end()
+            worker.send(self._function)
+        worker.send(dumps(batch))
         try:
-            with uninterrupted_children():
-                return self._pool.submit(_answer, batch)
-        except Lost as loss:
-            future: Future[Any] = Future()
-            future.set_exception(loss)
-            return future
-
-    def submit_alone(self, batch: Sequence[Any]) -> "Future[Any]":
-        """As `submit`; if another case has ended its process meanwhile, once more with no other beside it."""
-        future = self.submit(batch)
-        if not _is_lost(future):
-            return future
-        self._begin_again()
-        return self.submit(batch)
-
-    def mend(self, waiting: "deque[Submitted]") -> None:
-        """Runs once more what was lost with a process, if the first batch was.
-
-        The lost process had one of the first batches that are not answered, and nobody tells which. Each case of these
-        is run by itself, so that one that ends its process again takes no other with it.
-        """
-        if waiting[0].again or not _is_lost(waiting[0].future):
-            return
-        lost = [_is_lost(each.future) and not each.again for each in waiting]
-        self._begin_again()
-        mended: list[Submitted] = []
-        for each, is_lost, before in zip(waiting, lost, accumulate(lost), strict=True):
-            suspected = is_lost and before <= self._count
-            mended += map(self._by_itself, each.batch) if suspected else [each]
-        waiting.clear()
-        for each in mended:
-            left = not each.again and _is_lost(each.future)
-            waiting.append(each._replace(future=self.submit(each.batch)) if left else each)
-
-    def _by_itself(self, case: Any) -> "Submitted":
-        alone = Submitted([case], self.submit([case]), again=True)
-        if _is_lost(alone.future):
-            self._begin_again()
-        return alone
+            answers, error, trace = loads(worker.read(*LENGTH.unpack(worker.read(LENGTH.size))))
+        except EOFError:
+            worker.end()
+            raise Lost from None
+        if error is not None:
+            raise error from WorkerTraceback(trace)
+        return answers
 
     def end(self, unfinished: bool) -> None:
         """Nothing of them is left.
@@ -109,82 +94,66 @@ class Workers:
         Args:
             unfinished: whether they are still at work.
         """
-        self._pool.shutdown(kill_workers=unfinished)
-        remove_unfinished(self._folder)
-
-    def _begin(self) -> None:
-        with uninterrupted_children():  # else a lock that is being made would be left
-            self._pool = ProcessPoolExecutor(self._count, initializer=_begin, initargs=self._given, env=ONE_THREAD)
-
-    def _begin_again(self) -> None:
-        """Without one process the others are of no use either."""
-        self.end(unfinished=True)
-        self._begin()
+        self._ended = True
+        self._threads.shutdown(wait=False, cancel_futures=True)
+        for worker in [*self._begun]:
+            worker.end(0.0 if unfinished else PATIENCE)
+        self._threads.shutdown()
 
 
 class Submitted(NamedTuple):
-    """Cases that a process is given together, and the future of their answers.
-
-    Attributes:
-        again: they were lost once.
-    """
+    """Cases that a process is given together, and the future of their answers."""
 
     batch: Sequence[Any]
     future: "Future[Any]"
-    again: bool = False
 
 
 def in_order(
-    submit: Callable[[Sequence[Any]], "Future[Any]"],
-    batches: Iterable[Sequence[Any]],
-    most: int,
-    mend: Callable[["deque[Submitted]"], None] = lambda _: None,
+    submit: Callable[[Sequence[Any]], "Future[Any]"], batches: Iterable[Sequence[Any]], most: int
 ) -> Iterator[Submitted]:
-    """Batches as they are answered, no more than so many of them submitted at a time; `mend` may replace some before
-    the first is waited for."""
+    """Batches as they are answered, no more than so many of them submitted at a time."""
     waiting: deque[Submitted] = deque()
     for batch in batches:
         waiting.append(Submitted(batch, submit(batch)))
         if len(waiting) >= most:
-            mend(waiting)
             yield waiting.popleft()
     while waiting:
-        mend(waiting)
         yield waiting.popleft()
 
 
-def _is_lost(future: "Future[Any]") -> bool:
-    """Whether the process of a case was lost; waits for its answer."""
-    return isinstance(future.exception(), Lost)
-
-
-_function: Callable[[Any], Any] | BatchedRuns
 _collected = CollectedWarnings()
 
 
-def _begin(folder: Path, function: Callable[[Any], Any] | BatchedRuns, waiting: int) -> None:
+def _answer_cases(questions: BinaryIO, answers: BinaryIO) -> None:
     """In a worker: systems stay loaded as long as it lives, and only the process that waits shows anything."""
-    global _function
-    _function = function
-    end_with(waiting, tidy=lambda: rmtree(folder, ignore_errors=True))
-    note_unfinished(folder)
-    tempfile.tempdir = str(folder)  # a worker that is killed while a compiler runs removes nothing itself
-    collect_warnings()
     sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 (open as long as the process)
-    kept = ExitStack()
-    kept.enter_context(kept_loaded(folder))
-    atexit.register(kept.close)
+    function = load(questions)
+    note_unfinished(Path(tempfile.gettempdir()))
+    collect_warnings()
     keep_freed()
-    gc.freeze()  # loky collects garbage once a second, which takes 0.1 s with all that is imported
+    gc.freeze()  # the garbage of all that is imported is looked for again and again else
+    with kept_loaded():
+        while True:
+            try:
+                batch = load(questions)
+            except EOFError:
+                return
+            answer = _pickled_answer(function, batch)
+            answers.write(LENGTH.pack(len(answer)) + answer)
+            answers.flush()
+
+
+def _pickled_answer(function: Callable[[Any], Any] | BatchedRuns, batch: Sequence[Any]) -> bytes:
+    """The answers, the error that was raised instead, and where."""
+    try:
+        return dumps((answered_by(function, batch), None, ""))
+    except BaseException as error:
+        return dumps((None, error, format_exc()))
 
 
 def collect_warnings() -> None:
     """In a worker: from now on warnings go with the answers."""
     logging.getLogger().addHandler(_collected)
-
-
-def _answer(batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:
-    return answered_by(_function, batch)
 
 
 def answered_by(function: Callable[[Any], Any] | BatchedRuns, batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:

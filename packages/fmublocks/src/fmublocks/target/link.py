@@ -4,17 +4,12 @@ The process is one of this machine or the emulator; link.c says what is sent. St
 """
 
 import ctypes
-import os
-import select
-import signal
 import struct
-import subprocess
 from collections.abc import Sequence
 from pathlib import Path
-from time import monotonic
 from typing import NamedTuple
 
-from toolground.child_process import BEFORE_START
+from toolground.child_process import Child, signal_name
 
 EMULATOR = "qemu-system-arm"
 
@@ -78,14 +73,7 @@ class Link:
         self._number = ctypes.c_float if real == "f" else ctypes.c_double
         self._limit = START_LIMIT
         try:
-            self._process = subprocess.Popen(
-                command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                bufsize=0,
-                preexec_fn=BEFORE_START,
-            )
+            self._child = Child(command)
         except OSError as error:
             raise TargetError(f"{name} cannot be started: {command[0]}: {error.strerror}") from error
         sizes = struct.unpack("<4I", self._asked(b"i", 16))
@@ -116,8 +104,7 @@ class Link:
 
     def close(self) -> None:
         """Ends the program; it may have ended before."""
-        self._process.kill()
-        self._process.communicate()
+        self._child.end()
 
     def __enter__(self) -> "Link":
         return self
@@ -147,42 +134,24 @@ class Link:
         Raises:
             TargetError: it does not, within the limit; it has been ended then.
         """
-        try:
-            return self._exchanged(request, length)
-        except TargetError:
-            self.close()
-            raise
-
-    def _exchanged(self, request: bytes, length: int) -> bytes:
-        process = self._process
-        assert process.stdin
-        assert process.stdout
-        if process.stdin.closed:
+        if self._child.closed:
             raise TargetError(f"{self.name} was lost before")
         try:
-            process.stdin.write(request)
-        except BrokenPipeError:
+            self._child.send(request)
+            return bytes(self._child.read(length, self._limit))
+        except TimeoutError:
+            self.close()
+            raise TargetError(f"{self.name} hangs: no answer within {self._limit:g} s") from None
+        except EOFError:
             raise TargetError(self._fate()) from None
-        answer, end = b"", monotonic() + self._limit
-        while len(answer) < length:
-            ready, _, _ = select.select([process.stdout], [], [], max(end - monotonic(), 0.0))
-            if not ready:
-                raise TargetError(f"{self.name} hangs: no answer within {self._limit:g} s")
-            piece = os.read(process.stdout.fileno(), length - len(answer))
-            if not piece:
-                raise TargetError(self._fate())
-            answer += piece
-        return answer
 
     def _fate(self) -> str:
         """How the process has ended, in words."""
-        try:
-            code = self._process.wait(LIMIT)
-        except subprocess.TimeoutExpired:
+        if not self._child.end(LIMIT):
             return f"{self.name} closed its link"
-        assert self._process.stderr
-        lines = self._process.stderr.read().decode(errors="replace").strip().splitlines()
+        code = self._child.process.returncode
+        lines = self._child.errors.decode(errors="replace").strip().splitlines()
         if code < 0:
-            return f"{self.name} was lost: ended by {signal.Signals(-code).name}"
+            return f"{self.name} was lost: ended by {signal_name(-code)}"
         reason = "a fault of the processor" if code == CRASHED else lines[0] if lines else f"exit code {code}"
         return f"{self.name} crashed: {reason}"
