@@ -12,7 +12,7 @@ times = run_many(settling, np.linspace(0.0, 5.0, 1000))
 
 import os
 from collections.abc import Callable, Iterable, Iterator, MutableMapping, Sequence
-from concurrent.futures import CancelledError, Executor, Future
+from concurrent.futures import CancelledError, Executor, Future, wait
 from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import islice
 from pathlib import Path
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 AHEAD = 4
 """Batches a process that are submitted at a time, the one at work among them."""
+
+HEEDING = 0.2
+"""Seconds between two looks for signals while answers are waited for."""
 
 QUOTA = Path("/sys/fs/cgroup/cpu.max")
 """Of a container: how much of a period it may compute on all cores together; "max" is no limit (cgroups, version 2)."""
@@ -216,6 +219,8 @@ def _gathered(
     """
     batch, future = submitted.batch, submitted.future
     while batch:
+        while not future.done():  # a signal that another thread has got is heeded when this one wakes up
+            wait([future], HEEDING)
         try:
             answers = future.result()
         except loss as error:
