@@ -19,15 +19,16 @@ from pathlib import Path
 
 from fmublocks.builds import BUILDS, FMI3_FOLDER, FMIS, PLATFORMS
 from fmublocks.origin import NATIVE_FOLDER
+from toolground.argument_types import output_folder
+from toolground.arguments import option, positional, record
 from toolground.atomic_files import unchanged_if_stopped
+from toolground.printing import Printing
 
 from ...fmus.building.builds import build_fmus
 from ...fmus.catalogue import FMUS
 from ...fmus.names import COMPARATORS
 from ..loop.places import BUILD
-from .arguments import option, positional
-from .options import ParameterFiles, output_folder, record
-from .printing import Printing
+from .options import ParameterFiles
 
 IN_HELP = {"fmus": ", ".join(FMUS), "comparators": ", ".join(COMPARATORS)}
 

@@ -11,14 +11,15 @@ examples:
 from contextlib import ExitStack
 from pathlib import Path
 
+from toolground.argument_types import output_folder
+from toolground.arguments import option, record
 from toolground.errors import UserError
 from toolground.known_names import nearest
+from toolground.printing import Printing
 
 from ..loop.places import PLACES
-from .arguments import option
 from .jobs import distinguishing, job
-from .options import Loop, OurController, Replacing, controller, output, output_folder, plant, record
-from .printing import Printing
+from .options import Loop, OurController, Replacing, controller, output, plant
 from .settings import settings
 
 
