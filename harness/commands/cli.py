@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from toolground.errors import UserError
-from toolground.parsers import Parser, program
+from toolground.parsers import Parser, several_commands
 from toolground.program import run_arguments, run_program
 
 PURPOSES = {
@@ -83,7 +83,7 @@ def complete_commands(parser: argparse.ArgumentParser) -> None:
 
 def parser() -> Parser:
     """The parser with all commands."""
-    top = program("driveline", "driveline-damping", DESCRIPTION, PURPOSES, __package__ or "")
+    top = several_commands("driveline", "driveline-damping", DESCRIPTION, PURPOSES, __package__ or "")
     top.add_argument(
         "--print-completion",
         action=Completion,

@@ -8,7 +8,6 @@ examples:
   driveline target ACTION --help                                       explains an action
 """
 
-from contextlib import ExitStack
 from pathlib import Path
 
 from toolground.argument_types import output_folder
@@ -42,7 +41,7 @@ class Export(OurController, Replacing, Printing):
 def export(args: Export) -> int:
     # here and not above: mistakes and help are answered without them
     from fmublocks.target.sources import PRECISIONS, target_sources
-    from toolground.atomic_files import complete
+    from toolground.atomic_files import write_texts
 
     from ..exchange.target.controllers import for_car
     from ..simulation.provenance import require_same_text
@@ -55,9 +54,7 @@ def export(args: Export) -> int:
     if not args.replace:
         for path, text in files.items():
             require_same_text(text, path)
-    with ExitStack() as all_or_none:
-        for path, text in files.items():
-            all_or_none.enter_context(complete(path)).write_text(text, encoding="utf-8")
+    write_texts(files)
     args.written(files)
     return 0
 

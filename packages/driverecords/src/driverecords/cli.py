@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 
-from toolground.parsers import program
+from toolground.parsers import several_commands
 from toolground.program import run_program
 
 DESCRIPTION = """\
@@ -14,7 +14,7 @@ For example `driverecords look my_trip.csv`; `driverecords help look` explains i
 
 PURPOSES = {"recordings": {"look": "say what was found in a recorded drive, and what is odd"}}
 
-parser = partial(program, "driverecords", "driverecords", DESCRIPTION, PURPOSES, "driverecords.commands")
+parser = partial(several_commands, "driverecords", "driverecords", DESCRIPTION, PURPOSES, "driverecords.commands")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 
-from toolground.parsers import program
+from toolground.parsers import several_commands
 from toolground.program import run_program
 
 DESCRIPTION = """\
@@ -20,7 +20,7 @@ PURPOSES = {
     }
 }
 
-parser = partial(program, "fmublocks", "fmublocks", DESCRIPTION, PURPOSES, "fmublocks.commands")
+parser = partial(several_commands, "fmublocks", "fmublocks", DESCRIPTION, PURPOSES, "fmublocks.commands")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -33,7 +33,7 @@ def _rule(text: str) -> str:
     """The name of a rule."""
     from toolground.known_names import nearest
 
-    from .check import RULES
+    from .checking import RULES
 
     names = [rule.name for rule in RULES]
     if text not in names:
@@ -54,7 +54,7 @@ class Arguments(ForeignLimits, JsonPrinting):
 
 
 def run(args: Arguments) -> int:
-    from .check import check
+    from .checking import check
     from .rule import Severity
 
     style = "json" if args.json else args.format or FORMATS[0]

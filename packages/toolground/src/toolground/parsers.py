@@ -181,7 +181,7 @@ class Version(argparse.Action):
         parser.exit()
 
 
-def program(
+def several_commands(
     name: str, distribution: str, description: str, purposes: Mapping[str, Mapping[str, str]], package: str
 ) -> Top:
     """The parser of a program with several commands.
