@@ -1,5 +1,5 @@
-"""Each package alone: `python -m tests.alone [PACKAGE ...]` installs its wheel into an empty environment, with nothing of
-the checkout, and runs its tests there; says how much that takes on the disk."""
+"""Each package alone: `python -m tests.alone [PACKAGE ...]` installs its wheel into an empty environment, with nothing
+of the checkout, and runs its tests there; says how much that takes on the disk."""
 
 import os
 import subprocess
@@ -50,15 +50,20 @@ def tested(package: str, wheels: Path, folder: Path) -> str:
     return f"{package}: {size:.0f} MB installed, its tests pass"
 
 
+def write_wheels(folder: Path) -> None:
+    """Makes the wheels of all packages, of copies: what a build has left in the checkout would get into them."""
+    with TemporaryDirectory() as temporary:
+        sources = Path(temporary) / "sources"
+        copytree(ROOT / "packages", sources, ignore=ignore_patterns("build", "*.egg-info", "tests", "_steps.*"))
+        build = (sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation")
+        run(*build, "--wheel-dir", folder, *(sources / package for package in PACKAGES), folder=sources)
+
+
 def main(packages: list[str]) -> None:
     with TemporaryDirectory() as temporary, ThreadPoolExecutor(2) as pool:
         wheels = Path(temporary) / "wheels"
         wheels.mkdir()
-        # what an earlier build has left in the checkout would get into the wheels
-        sources = Path(temporary) / "sources"
-        copytree(ROOT / "packages", sources, ignore=ignore_patterns("build", "*.egg-info", "tests", "_steps.*"))
-        build = (sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation")
-        run(*build, "--wheel-dir", wheels, *(sources / package for package in PACKAGES), folder=wheels)
+        write_wheels(wheels)
         said = pool.map(lambda package: tested(package, wheels, Path(temporary) / package), packages)
         for text in said:
             print(text, flush=True)
