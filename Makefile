@@ -7,7 +7,7 @@ READY := $(VENV)/ready
 SITE := $(VENV)/site
 CROSS := $(VENV)/cross
 
-.PHONY: help setup demo test test-all test-target mutation fuzz lint check cross bench studies site dist clean
+.PHONY: help setup demo test test-all packages test-target mutation fuzz lint check cross bench studies site dist clean
 
 help: ## what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' Makefile
@@ -49,6 +49,9 @@ test: $(READY) ## the tests but the slow ones; once set up, without network
 
 test-all: $(READY) ## all tests
 	$(TEST)
+
+packages: $(READY) ## each package alone: its wheel in an empty environment, and its tests there
+	$(BIN)/python -m tests.alone
 
 test-target: $(READY) ## the controller's C on an emulated processor; says what to apt-get install
 	$(BIN)/python -m docs.studies.target_deviations
@@ -96,11 +99,11 @@ $(SITE): $(READY)
 site: $(SITE) ## the documentation as a site, into site/; once its packages are installed, without network
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
-dist: $(READY) ## what is published, in dist/: the sources and a wheel, checked, and an archive of FMUs for all platforms
+dist: $(READY) ## what is published, in dist/: the sources and wheels of all packages, checked, and an archive of FMUs for all platforms
 	$(INSTALL) '.[publish,cross]'
 	rm -rf dist
 	$(BIN)/python -m driveline.harness.explorer
-	$(BIN)/python -m build --no-isolation
+	for package in . $(PACKAGES); do $(BIN)/python -m build --no-isolation --outdir dist $$package || exit 1; done
 	PATH="$(BIN):$$PATH" auditwheel repair --wheel-dir dist dist/*-linux_*.whl
 	rm dist/*-linux_*.whl
 	$(BIN)/twine check --strict dist/*

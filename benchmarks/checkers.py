@@ -18,7 +18,7 @@ from fmpy.validation import validate_fmu
 from rich.console import Console
 from rich.table import Table
 
-from fmucheck.check import check
+from fmucheck.checking import check
 from fmuloop.limits import Limits
 from toolground.interruption import script
 

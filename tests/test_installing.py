@@ -17,6 +17,7 @@ from markdown_it import MarkdownIt
 
 from driveline.fmus.catalogue import FMUS
 from tests import ROOT
+from tests.alone import PACKAGES, write_wheels
 
 VERSION = version("driveline-damping")
 
@@ -35,9 +36,11 @@ def ran(*command: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Folder with the sources, and with the wheel that is made from them; one process at a time makes them in ROOT."""
+    """Folder with the sources, with the wheel that is made from them, and with those of the packages; one process at a
+    time makes them in ROOT."""
     fcntl = pytest.importorskip("fcntl")
     folder = tmp_path_factory.mktemp("dist")
+    write_wheels(folder)
     with (ROOT / "pyproject.toml").open("rb") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
         ran(sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, ROOT, folder=folder)
@@ -46,7 +49,7 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def wheel(published: Path) -> Path:
-    (path,) = published.glob("*.whl")
+    (path,) = published.glob("driveline_damping-*.whl")
     return path
 
 
@@ -57,17 +60,28 @@ def metadata(wheel: Path) -> Message:
 
 
 @pytest.fixture(scope="module")
-def scripts(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Scripts of an environment with the wheel, and with the packages of others that run this test."""
+def scripts(published: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Scripts of an environment with all wheels, and with the packages of others that run this test."""
     environment = tmp_path_factory.mktemp("environment")
     ran(sys.executable, "-m", "venv", "--without-pip", environment, folder=environment)
     python = environment / "bin/python"
-    install = ("-m", "pip", "--python", python, "install", "--quiet", "--no-index", "--no-deps", wheel)
+    install = (
+        "-m",
+        "pip",
+        "--python",
+        python,
+        "install",
+        "--quiet",
+        "--no-index",
+        "--no-deps",
+        *published.glob("*.whl"),
+    )
     ran(sys.executable, *install, folder=environment)
     (packages,) = environment.glob("lib/python*/site-packages")
     (packages / "others.pth").write_text(sysconfig.get_path("purelib") + "\n")
-    where = ran(python, "-c", "import driveline; print(driveline.__file__)", folder=environment).stdout
-    assert where.startswith(str(packages)), "the packages are not those of the checkout"
+    for name in ("driveline", *PACKAGES):
+        where = ran(python, "-c", f"import {name}; print({name}.__file__)", folder=environment).stdout
+        assert where.startswith(str(packages)), f"{name} is not that of the checkout"
     return environment / "bin"
 
 

@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterator, Mapping
 
 from docs.site import ROOT
-from driveline.harness.commands.cli import COMMANDS, EXIT_CODES, PURPOSES, complete_commands, parser
+from driveline.harness.commands.cli import COMMANDS, PURPOSES, complete_commands, parser
+from toolground.parsers import EXIT_CODES
 
 FOLDER = "commands"
 

@@ -33,7 +33,7 @@ from driverecords.quantities import BY_UNIT, QUANTITIES, aliases
 from driverecords.thresholds import Threshold
 from fmublocks.description.documentation import tables, timing
 from fmublocks.fmu import Fmu
-from fmucheck import check
+from fmucheck.checking import RULES
 from toolground.file_limits import LIMITS
 
 CHECKS = Path(__file__).with_name("recording_checks.md").read_text(encoding="utf-8")
@@ -67,7 +67,7 @@ def check_rules() -> str:
     """What `driveline check` looks at."""
     rows = [
         (f"`{rule.name}`", rule.severity.value, rule.clause.fmi2 or "", rule.clause.fmi3 or "", rule.title, rule.others)
-        for rule in check.RULES
+        for rule in RULES
     ]
     headings = ("rule", "severity", "FMI 2.0", "FMI 3.0", "what an FMU does that keeps it", "also known to")
     return markdown_table(headings, rows, labels=6)

@@ -2,8 +2,8 @@
 
 from rich.table import Table as Printed
 
-from driveline.harness.views.terminal import print_table
 from toolground.plain_text import printed
+from toolground.tables import print_table
 
 from .study import Table, number
 

@@ -19,12 +19,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from toolground.arguments import filled, positional, record
 from toolground.errors import UserError
 from toolground.plain_text import plain
+from toolground.printing import Printing
 
-from .arguments import filled, positional, record
 from .options import Replacing
-from .printing import Printing
 
 PLACED = ("report", "output")
 """Options that may name a file of a result, which need not be beside its record."""

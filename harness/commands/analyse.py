@@ -15,12 +15,13 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from toolground.arguments import option, record
+from toolground.printing import JsonPrinting
+
 from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
-from .arguments import option
 from .jobs import distinguishing, job
-from .options import FmuFolder, ParameterFiles, Replacing, controller_with_equations, output, record
-from .printing import JsonPrinting
+from .options import FmuFolder, ParameterFiles, Replacing, controller_with_equations, output
 from .settings import warn_of_gains
 
 

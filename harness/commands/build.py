@@ -14,45 +14,28 @@ examples:
   driveline build --platform all --fmi 3     for FMI 3.0, on Linux, Windows and macOS (extra `cross`)
 """
 
-from contextlib import closing
 from pathlib import Path
 
-from fmublocks.builds import BUILDS, FMI3_FOLDER, FMIS, PLATFORMS
-from fmublocks.origin import NATIVE_FOLDER
-from toolground.atomic_files import unchanged_if_stopped
+from fmublocks.commands.build_options import BuildOptions
+from toolground.argument_types import output_folder
+from toolground.arguments import option, positional, record
 
 from ...fmus.building.builds import build_fmus
 from ...fmus.catalogue import FMUS
 from ...fmus.names import COMPARATORS
 from ..loop.places import BUILD
-from .arguments import option, positional
-from .options import ParameterFiles, output_folder, record
-from .printing import Printing
+from .options import ParameterFiles
 
 IN_HELP = {"fmus": ", ".join(FMUS), "comparators": ", ".join(COMPARATORS)}
 
 
 @record
-class Arguments(ParameterFiles, Printing):
+class Arguments(BuildOptions, ParameterFiles):
     names: tuple[str, ...] = positional("a name or a file of your own (default: all names)", str, "FMU", "*")
-    build: str | None = option(None, "which build (default: each that is possible here)", choices=BUILDS)
-    platform: str = option("host", "of the native build (default: %(default)s)", choices=PLATFORMS)
-    fmi: str = option(str(FMIS[0]), "2.0 or 3.0 (default: %(default)s)", choices=[str(fmi) for fmi in FMIS])
     output: Path = option(BUILD, "(default: %(default)s)", output_folder, metavar="FOLDER")
 
 
 def run(args: Arguments) -> int:
     files = args.vehicle, args.parameters
-    built = build_fmus(args.names, args.output, args.build, args.platform, *files, int(args.fmi))
-    folders = (args.output / folder for folder in ("", NATIVE_FOLDER, FMI3_FOLDER))
-    made: list[Path] = []
-    try:
-        with unchanged_if_stopped("*.fmu", *folders), closing(built):
-            made.extend(built)
-    except KeyboardInterrupt:
-        made.clear()
-        raise
-    finally:  # of one that cannot be built the others stay
-        for path in made:
-            args.say(f"{path}  {path.stat().st_size / 1024:.0f} kB")
+    args.write(build_fmus(args.names, args.output, args.build, args.platform, *files, int(args.fmi)))
     return 0

@@ -15,11 +15,11 @@ examples:
 from pathlib import Path
 
 from fmublocks.builds import PLATFORMS
+from toolground.arguments import option, record
+from toolground.printing import Printing
 
 from ..loop.places import PLACES
-from .arguments import option
-from .options import file_of, output, record
-from .printing import Printing
+from .options import file_of, output
 
 
 @record

@@ -19,12 +19,13 @@ examples:
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from toolground.argument_types import file
+from toolground.arguments import option, positional, record
 from toolground.errors import UserError
+from toolground.printing import JsonPrinting
 
 from .analyse import finite
-from .arguments import option, positional
-from .options import Replacing, file, file_of, record
-from .printing import JsonPrinting, write_toml
+from .options import Replacing, file_of, write_toml
 
 if TYPE_CHECKING:
     from ..studies.margins.car_properties import PlantProperties

@@ -17,6 +17,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from toolground.arguments import record
+from toolground.printing import JsonPrinting
+
 from ..loop.places import PLACES
 from ..loop.settings import Settings
 from ..manoeuvres.catalogue import COMPARED
@@ -25,8 +28,7 @@ from ..metrics.run_metrics import Metrics
 from ..views.metrics_table import legend
 from .jobs import RunJob, distinguishing, job
 from .manoeuvres import Chosen, Listing, chosen, manoeuvre
-from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plants, record
-from .printing import JsonPrinting
+from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plants
 from .settings import all_settings, caption, dampings, say_unknowns
 
 if TYPE_CHECKING:

@@ -20,12 +20,12 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
+from toolground.arguments import record
 from toolground.errors import UserError
 
 from ..loop.places import PLANTS
 from .design_search import Search, require_search, run_search
-from .options import file_of, record
-from .printing import write_toml
+from .options import file_of, write_toml
 
 if TYPE_CHECKING:
     from ..design.design_weights import Weights

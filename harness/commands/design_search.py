@@ -7,23 +7,14 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from toolground.argument_types import counted, output_folder, share
+from toolground.arguments import expert, option, record
 from toolground.errors import UserError
+from toolground.printing import Printing
 
 from ..loop.places import BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..loop.settings import Settings
-from .arguments import option, record
-from .options import (
-    FmuFolder,
-    Replacing,
-    controller_with_equations,
-    counted,
-    expert,
-    file_of,
-    output_folder,
-    seed,
-    share,
-)
-from .printing import Printing, write_toml
+from .options import FmuFolder, Replacing, controller_with_equations, file_of, seed, write_toml
 
 if TYPE_CHECKING:
     from ..design.search.parameter_search import Evaluated
@@ -77,13 +68,13 @@ def require_search(args: Search) -> None:
 def run_search(args: Search, folder: Path) -> int:
     # here and not above: mistakes and help are answered without them
     from fmuloop.executors import dask_executor
+    from toolground.tables import print_table
 
     from ...fmus.building.parameter_files import read_vehicle
     from ..design.search.cost_evaluation import CostEvaluation
     from ..design.search.pareto_figure import choices_table, plot_front
     from ..design.search.search_space import space
     from ..design.search.tune import EVALUATIONS, RECORD, tune
-    from ..views.terminal import print_table
 
     controller, evaluations, character, number = (
         default if getattr(args, name) is None else getattr(args, name) for name, default in DEFAULTS.items()

@@ -13,15 +13,15 @@ examples:
 
 from pathlib import Path
 
+from driverecords.arguments import Headings, recording
+from toolground.arguments import option, record
 from toolground.errors import UserError
+from toolground.printing import Printing
 
 from ..loop.places import PLACES
 from ..manoeuvres.catalogue import MANOEUVRES
-from .arguments import option
 from .manoeuvres import Chosen, Listing, manoeuvre
-from .options import Loop, controllers, output, plants, record
-from .printing import Printing
-from .recorded import Headings, recording
+from .options import Loop, controllers, output, plants
 from .settings import all_settings
 
 
@@ -46,6 +46,7 @@ def run(args: Arguments) -> int:
     import webbrowser
 
     from driverecords.drive import read_drive
+    from driverecords.findings import tell
     from driverecords.plausibility import of_drive
     from fmuloop.interface import Interface
 
@@ -54,7 +55,6 @@ def run(args: Arguments) -> int:
     from ..explorer.module import require_possible, sources_of
     from ..manoeuvres.for_car import largest_torque
     from ..studies.drives.replay import car_of
-    from ..studies.drives.verdict import tell
 
     for path in others:
         if path.suffix == ".fmu":

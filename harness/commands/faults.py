@@ -20,12 +20,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from toolground.arguments import option, record
+from toolground.printing import JsonPrinting
+
 from ..loop.places import NATIVE
 from ..loop.settings import loop
-from .arguments import option, record
 from .jobs import Job, campaign_job, distinguishing, job
 from .options import Campaign, case, cases, controller, output, seed
-from .printing import JsonPrinting
 from .settings import caption, plants_settings, say_unknowns
 
 if TYPE_CHECKING:

@@ -29,14 +29,16 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from driverecords.arguments import examples, recording
+from toolground.argument_types import written
+from toolground.arguments import option, record
 from toolground.optional_packages import required
+from toolground.printing import Printing
 
-from .arguments import option
 from .identify_step import run_step
 from .jobs import job
-from .options import Figures, Replacing, Report, file_of, record, written
-from .printing import Printing
-from .recorded import Recorded, examples, recording
+from .options import Figures, Replacing, Report, file_of
+from .recorded import Recorded
 
 if TYPE_CHECKING:
     from driverecords.measurement import Measurement

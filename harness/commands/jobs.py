@@ -6,9 +6,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from toolground.printing import Printing
+
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .printing import Printing
 
 if TYPE_CHECKING:
     from fmuloop.results import Results

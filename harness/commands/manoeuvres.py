@@ -7,6 +7,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from toolground.arguments import option, record
 from toolground.errors import UserError
 from toolground.known_names import nearest
 from toolground.plain_text import plain
@@ -15,8 +16,7 @@ from ..loop.places import PLANTS
 from ..loop.settings import Settings
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .arguments import option
-from .options import names_or_files, record
+from .options import names_or_files
 
 
 class Chosen(NamedTuple):

@@ -10,12 +10,12 @@ examples:
 
 from pathlib import Path
 
+from toolground.arguments import option, positional, record
 from toolground.errors import UserError
+from toolground.printing import JsonPrinting
 
 from ..loop.places import OPTIONAL, PLACES
-from .arguments import option, positional
-from .options import Replacing, file_of, record
-from .printing import JsonPrinting, write_toml
+from .options import Replacing, file_of, write_toml
 
 
 @record

@@ -2,114 +2,26 @@
 `harness.commands.settings` says what they mean."""
 
 from argparse import ArgumentError, ArgumentTypeError, _AppendAction
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from math import ceil, isfinite
+from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Any
 
-from fmuloop.limits import USUAL_LIMITS, Limits
+from fmuloop.limit_options import ForeignLimits
+from toolground.argument_types import counted, file, folder, output_folder, written
+from toolground.arguments import EXPERTS, expert, option, record
 from toolground.errors import UserError
 from toolground.known_names import nearest
 from toolground.plain_text import plain, quoted
-from toolground.written_numbers import real, whole
+from toolground.written_numbers import real
 
 from ..loop.parameter_words import FORMS, said
 from ..loop.places import BUILD, BUILD_HELP, BUILDS, PLACES, PLANTS
 from ..views.figure_options import KINDS, USUAL_KINDS, FigureOptions
 from ..views.signals_file import FORMATS
-from .arguments import EXPERTS, option, record
-
-expert = partial(option, group=EXPERTS)
 
 LEAST_WINDOW = 0.01
 """In s, of the figures: a few samples."""
-
-
-def _path(text: str, what: str, other: str, wrong: Callable[[Path], bool]) -> Path:
-    if not text:
-        raise ArgumentTypeError(f"the name of the {what} is empty")
-    try:
-        if wrong(Path(text)):
-            raise ArgumentTypeError(f"{text} is a {other}; a {what} is needed")
-    except OSError as error:  # a name that is too long
-        raise ArgumentTypeError(error.strerror or str(error)) from error
-    return Path(text)
-
-
-def folder(text: str) -> Path:
-    """The path of a folder, which may not exist yet."""
-    return _path(text, "folder", "file", lambda path: path.exists() and not path.is_dir())
-
-
-def file(text: str) -> Path:
-    """The path of a file, which may not exist yet."""
-    return _path(text, "file", "folder", Path.is_dir)
-
-
-def output_folder(text: str) -> Path:
-    """The path of a folder that can be written to, or made; tried here, before anything takes long."""
-    path = folder(text)
-    _require_writable(text, path.absolute())
-    return path
-
-
-def output_file(text: str) -> Path:
-    """The path of a file in such a folder."""
-    path = file(text)
-    _require_writable(text, path.absolute().parent)
-    return path
-
-
-def _require_writable(text: str, there: Path) -> None:
-    try:
-        while not there.exists():
-            there = there.parent
-        TemporaryFile(dir=there).close()
-    except OSError as error:
-        raise ArgumentTypeError(f"{text} cannot be written to: {there}: {error.strerror}") from error
-
-
-def number(takes: Callable[[float], bool], what: str) -> Callable[[str], float]:
-    """What takes a number, and says what it must be."""
-
-    def parsed(text: str) -> float:
-        found = real(text)
-        if found is None or not takes(found):
-            raise ArgumentTypeError(f"{quoted(text)} is not {what}")
-        return found
-
-    return parsed
-
-
-seconds = number(lambda x: isfinite(x) and x > 0.0, "a time above 0 s")
-finite = number(isfinite, "a finite number")
-share = number(lambda x: 0.0 <= x <= 1.0, "a number from 0 to 1")
-
-
-def amount(text: str) -> float:
-    """A finite number that is 0 or more."""
-    if (found := finite(text)) < 0.0:
-        raise ArgumentTypeError(f"{quoted(text)} is below 0")
-    return found
-
-
-def megabytes(text: str) -> int:
-    """A size above 0 MB, in bytes; of a part of a byte the whole."""
-    return ceil(number(lambda x: isfinite(x * 1e6) and x > 0.0, "a size above 0 MB")(text) * 1e6)
-
-
-def counted(least: int, most: int) -> Callable[[str], int]:
-    """What takes a whole number between these."""
-
-    def parsed(text: str) -> int:
-        found = whole(text, len(str(most)))
-        if found is None or not least <= found <= most:
-            raise ArgumentTypeError(f"{quoted(text)} is not a whole number from {least} to {most}")
-        return found
-
-    return parsed
 
 
 def seed(text: str) -> int:
@@ -262,28 +174,6 @@ class FmuFolder:
     )
 
 
-@record
-class ForeignLimits:
-    """What FMUs that are not ours may take."""
-
-    time_limit: float = expert(
-        USUAL_LIMITS.call,
-        "how long a call of an FMU that is given by its path may last (default: %(default)g)",
-        seconds,
-        metavar="SECONDS",
-    )
-    unpacked_limit: int = expert(
-        USUAL_LIMITS.unpacked,
-        f"how much it may unpack to (default: {USUAL_LIMITS.unpacked / 1e6:.0f})",
-        megabytes,
-        metavar="MB",
-    )
-
-    @property
-    def limits(self) -> Limits:
-        return Limits(self.time_limit, self.unpacked_limit)
-
-
 def _mapping(texts: tuple[str, ...]) -> Mapping[str, str]:
     from fmuloop.mapping import parsed
 
@@ -329,22 +219,22 @@ def output(default: str, files: str) -> Any:
     return option(Path(default), f"for {files} (default: %(default)s)", read, metavar=metavar)
 
 
-def written(ending: str, what: str) -> Callable[[str], Path]:
-    """What takes the name of a file with this ending that can be written to; `what` says what it is."""
-
-    def named(text: str) -> Path:
-        if Path(text).suffix != ending:
-            raise ArgumentTypeError(f"{quoted(text)}: {what} is a {ending}")
-        return output_file(text)
-
-    return named
-
-
 @record
 class Replacing:
     """Without it results of another run stay."""
 
     replace: bool = option(False, "replace results that are those of another run")
+
+
+def write_toml(text: str, path: Path, replace: bool) -> None:
+    """Writes a vehicle file or one of gains; one with another content only if it may be replaced."""
+    from toolground.atomic_files import write_text
+
+    from ..simulation.provenance import require_same_text
+
+    if not replace:
+        require_same_text(text, path)
+    write_text(text, path)
 
 
 def _there(name: str) -> str:

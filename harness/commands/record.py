@@ -22,12 +22,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from toolground.argument_types import amount, counted, finite, seconds
+from toolground.arguments import option, record
 from toolground.plain_text import quoted
+from toolground.printing import Printing
 
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
-from .arguments import option
-from .options import amount, counted, finite, output, record, seconds
-from .printing import Printing
+from .options import output
 from .settings import settings
 from .signals_run import OneRun, control, signals_job, write_frames
 

@@ -7,11 +7,13 @@ from typing import Any
 
 from rich.table import Table
 
+from toolground.printing import Printing
+
 from ..loop.built_fmus import built_together
 from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
 from .design import designed
-from .printing import Printing, write_toml
+from .options import write_toml
 
 
 def compared_in() -> Settings:
@@ -57,7 +59,7 @@ def redesign(car: Path, vehicle: Mapping[str, Any], settings: Settings, replace:
     files = f"--vehicle {quote(str(car))} --parameters {quote(str(gains))}"
     out.say(f"to drive with them: driveline simulate {files} --output {quote(f'results/{car.stem}')}")
     if not out.silent:
-        from ..views.terminal import print_table
+        from toolground.tables import print_table
 
         print_table(_compared(read_files(car, None), vehicle, read_files(car, gains), settings))
 

@@ -26,17 +26,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from driverecords.arguments import examples, recording
+from toolground.argument_types import seconds
+from toolground.arguments import option, record
 from toolground.errors import UserError
+from toolground.printing import JsonPrinting
 
 from ..loop.places import PLACES, PLANTS
 from ..loop.settings import Settings
 from ..metrics.run_metrics import RideMetrics
 from ..views.metrics_table import legend
-from .arguments import option
 from .jobs import RunJob, distinguishing, job
-from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plant, record, seconds
-from .printing import JsonPrinting
-from .recorded import Recorded, examples, recording
+from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plant
+from .recorded import Recorded
 from .settings import all_settings, caption
 
 if TYPE_CHECKING:
@@ -63,12 +65,12 @@ class Arguments(Recorded, Loop, Replacing, SignalsFormat, Figures, Report, JsonP
 def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
     from driverecords.drive import read_drive
+    from driverecords.findings import tell
     from driverecords.plausibility import of_drive
 
     from ..manoeuvres.road_load import Track
     from ..manoeuvres.speed_following import require_held
     from ..studies.drives.replay import car_of
-    from ..studies.drives.verdict import tell
 
     if args.look and args.report:
         raise UserError("--look runs nothing, so that there is nothing to --report")
@@ -103,8 +105,10 @@ def drive(
         given: settings by the names of the controllers.
         same: what distinguishes the run beside them.
     """
+    from driverecords.findings import tell
+
     from ..studies.drives.replay import replay, write
-    from ..studies.drives.verdict import followed_speed, tell
+    from ..studies.drives.verdict import followed_speed
     from ..views.terminal import rides_reasons
 
     options = args.options(caption(args), (recording.name, 0.0, float(track.t[-1])))
@@ -146,21 +150,14 @@ def _tell(
 
 def look(args: Arguments, recording: "Drive", odd: "Sequence[Finding]") -> int:
     """Shows a recording, without any run."""
-    from rich.markup import escape
+    from driverecords.column_table import document, show
 
-    from ..studies.drives.verdict import tell
-    from ..views.recording_view import HEADINGS, column_rows, columns, plot_recording
-    from ..views.terminal import plain_table, print_table
+    from ..views.recording_view import plot_recording
 
     options = args.options("", (recording.name, float(recording.time[0]), float(recording.time[-1])))
-    if not args.silent:
-        rows = (map(escape, row) for row in column_rows(recording))
-        print_table(plain_table(escape(str(args.recording)), HEADINGS, map(list, rows)))
-    tell(odd, args.recording, args.strict)
-    args.say("" if odd else "nothing is odd")
+    show(args, args.recording, recording, odd, args.strict)
     kinds = tuple(args.figures or ("png",))
     figures = plot_recording(recording, odd, args.output / f"{recording.name}_look", options._replace(kinds=kinds))
     args.written(figures)
-    findings = [finding.document() for finding in odd]
-    args.document({"columns": columns(recording), "findings": findings, "files": figures})
+    args.document({**document(recording, odd), "files": figures})
     return 0

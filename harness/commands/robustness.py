@@ -14,11 +14,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from toolground.arguments import option, record
+from toolground.printing import JsonPrinting
+
 from ..loop.settings import Settings
-from .arguments import option, record
 from .jobs import Job, campaign_job, distinguishing, job
 from .options import Campaign, case, cases, controllers, output, seed
-from .printing import JsonPrinting
 from .settings import all_settings, caption, say_unknowns
 
 if TYPE_CHECKING:

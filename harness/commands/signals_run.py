@@ -5,15 +5,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from toolground.arguments import option, record
 from toolground.errors import UserError
 from toolground.optional_packages import required
 
 from ..loop.places import PLACES
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
-from .arguments import option
 from .jobs import RunJob, distinguishing, job
-from .options import Loop, Replacing, SignalsFormat, controller, output, plant, record
+from .options import Loop, Replacing, SignalsFormat, controller, output, plant
 
 if TYPE_CHECKING:
     from fmuloop.results import Results

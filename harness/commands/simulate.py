@@ -15,15 +15,16 @@ examples:
 from pathlib import Path
 
 from fmuloop.system import Scheme
+from toolground.argument_types import seconds
+from toolground.arguments import expert, option, record
 from toolground.errors import UserError
+from toolground.printing import JsonPrinting
 
 from ..loop.places import STEP_SIZE
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..views.figure_options import FigureOptions
-from .arguments import option
 from .manoeuvres import Chosen, Listing, manoeuvre
-from .options import Figures, expert, output, record, seconds
-from .printing import JsonPrinting
+from .options import Figures, output
 from .settings import caption, settings
 from .signals_run import OneRun, signals_job, write_frames
 

@@ -16,13 +16,15 @@ examples:
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from toolground.arguments import record
+from toolground.printing import Printing
+
 from ..loop.places import BUILDS, PLANTS
 from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .jobs import distinguishing, job
 from .manoeuvres import Chosen, Listing, manoeuvre
-from .options import Loop, Replacing, controller, output, plants, record
-from .printing import Printing
+from .options import Loop, Replacing, controller, output, plants
 from .settings import plants_settings
 
 if TYPE_CHECKING:

@@ -8,17 +8,17 @@ examples:
   driveline target ACTION --help                                       explains an action
 """
 
-from contextlib import ExitStack
 from pathlib import Path
 
+from toolground.argument_types import output_folder
+from toolground.arguments import option, record
 from toolground.errors import UserError
 from toolground.known_names import nearest
+from toolground.printing import Printing
 
 from ..loop.places import PLACES
-from .arguments import option
 from .jobs import distinguishing, job
-from .options import Loop, OurController, Replacing, controller, output, output_folder, plant, record
-from .printing import Printing
+from .options import Loop, OurController, Replacing, controller, output, plant
 from .settings import settings
 
 
@@ -41,7 +41,7 @@ class Export(OurController, Replacing, Printing):
 def export(args: Export) -> int:
     # here and not above: mistakes and help are answered without them
     from fmublocks.target.sources import PRECISIONS, target_sources
-    from toolground.atomic_files import complete
+    from toolground.atomic_files import write_texts
 
     from ..exchange.target.controllers import for_car
     from ..simulation.provenance import require_same_text
@@ -54,9 +54,7 @@ def export(args: Export) -> int:
     if not args.replace:
         for path, text in files.items():
             require_same_text(text, path)
-    with ExitStack() as all_or_none:
-        for path, text in files.items():
-            all_or_none.enter_context(complete(path)).write_text(text, encoding="utf-8")
+    write_texts(files)
     args.written(files)
     return 0
 

@@ -9,13 +9,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
-from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
-from fmublocks.native.compiler import FLAGS, WHOLE, CompilerError, compile_in, run_compiler, zig_compiler
+from fmublocks.native.compiler import WHOLE, CompilerError, zig_compiler
 from fmublocks.native.packaging import build_native
+from fmublocks.wasm import linked
 from fmuloop.compiled_steps import SOURCE as STEPS
 from fmuloop.interface import Interface, type_of, unit_of
 from fmuloop.wiring import Fit, fit
@@ -34,18 +34,10 @@ from .tables import ROWS, Loop, loop, tables
 
 HERE = Path(__file__).parent
 C_FILES = [HERE / "c" / name for name in ("page_loop.c", "page_mode.c")]
-TARGET = ("-target", "wasm32-wasi")
-FAST = ("-msimd128", "-flto")
-"""Two numbers at a time, each with its own rounding, as every browser of the last years can; and functions of FMUs
-within the loop that calls them."""
-
 EXPORTS = (
     *("begin", "set", "start_run", "run_steps", "rows", "last_message"),
     *("begin_mode", "set_of_mode", "mode_frequency"),
 )
-LINKED = ("-mexec-model=reactor", "-s", *(f"-Wl,--export={name}" for name in EXPORTS), "-Wl,-z,stack-size=262144")
-"""Nothing is imported: what would print is not linked."""
-
 SOURCES = "sources/"
 """Of an FMU, in its archive."""
 
@@ -224,9 +216,9 @@ def _inputs(fitted: Fit) -> list[str]:
     return [port.name for port in fitted.system.inputs if port.name not in fitted.absent]
 
 
-def _zig() -> list[str]:
+def _zig() -> None:
     try:
-        return [*zig_compiler()]
+        zig_compiler()
     except CompilerError as reason:
         raise UserError(
             "there is no Zig that makes the loops of a page: pip install ziglang; or install driveline-damping from a "
@@ -235,29 +227,11 @@ def _zig() -> list[str]:
 
 
 def _linked(sources: Mapping[str, Mapping[str, bytes]], head: str, loops: Sequence[Loop]) -> bytes:
-    zig = [*_zig(), *TARGET]
+    _zig()
     most = max(each.layout.dtype.itemsize for each in loops)
     defined = (f"-DROWS={ROWS}", f"-DMOST_BYTES={-(-most // 8) * 8}", "-DMOST_ROUNDS=16")
-    own = {
-        **{file.name: file.read_bytes() for file in C_FILES},
-        "tables.h": head.encode(),
-        STEPS.name: STEPS.read_bytes(),
-        **{h.name: h.read_bytes() for h in Path(str(files("fmpy"))).glob("c-code/fmi2*.h")},
-    }
-    with TemporaryDirectory() as temporary, ThreadPoolExecutor() as pool:
-
-        def compiled(name: str) -> bytes:
-            prefix = f"-DFMI2_FUNCTION_PREFIX={name}_"
-            return compile_in([*zig, *FLAGS, *FAST, prefix, "-c", WHOLE, "-o", f"{name}.o"], f"{name}.o", sources[name])
-
-        folder = Path(temporary)
-        for name, made in zip(sources, pool.map(compiled, sources), strict=True):
-            (folder / f"{name}.o").write_bytes(made)
-        for name, content in own.items():
-            (folder / name).write_bytes(content)
-        objects = [f"{name}.o" for name in sources]
-        run_compiler([*zig, *FLAGS, *FAST, *defined, C_FILES[0].name, *objects, *LINKED, "-o", "loop.wasm"], folder)
-        return (folder / "loop.wasm").read_bytes()
+    own = {file.name: file.read_bytes() for file in (*C_FILES, STEPS)} | {"tables.h": head.encode()}
+    return linked(sources, own, EXPORTS, defined)
 
 
 KINDS = {"Real": 0, "Integer": 1, "Boolean": 2}

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -14,37 +13,6 @@ from .colours import BLUE, VERMILION
 from .figure_options import PLAIN, FigureOptions
 from .figure_style import plot
 from .panels import Axis, Curve, Panel, Part, Points
-
-HEADINGS = ("quantity", "column", "read as", "samples", "every, s", "from, s", "to, s", "least", "largest")
-
-
-def columns(drive: Drive) -> list[dict[str, Any]]:
-    """Of each column what was found: for tools, in the units of the file."""
-    return [_column(channel) for channel in drive.channels.values()]
-
-
-def column_rows(drive: Drive) -> Iterator[list[str]]:
-    """The same for people; `read as` has the unit of the file and that of the SI."""
-    for one in columns(drive):
-        unit = one["unit"] if one["unit"] == one["si_unit"] else f"{one['unit']} -> {one['si_unit']}"
-        numbers = (one[name] for name in ("interval_s", "begin_s", "end_s", "least", "largest"))
-        yield [one["quantity"], one["column"], unit, str(one["samples"]), *(f"{value:.6g}" for value in numbers)]
-
-
-def _column(channel: Channel) -> dict[str, Any]:
-    written = channel.values / channel.file_unit.factor
-    return {
-        "quantity": channel.quantity,
-        "column": channel.heading,
-        "unit": channel.file_unit.unit,
-        "si_unit": channel.unit,
-        "samples": len(channel.time),
-        "interval_s": channel.interval,
-        "begin_s": float(channel.time[0]),
-        "end_s": float(channel.time[-1]),
-        "least": float(written.min()),
-        "largest": float(written.max()),
-    }
 
 
 def plot_recording(drive: Drive, findings: Sequence[Finding], stem: Path, options: FigureOptions = PLAIN) -> list[Path]:

@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import tomllib
 from importlib.metadata import version
 from pathlib import Path
 
@@ -42,6 +43,17 @@ def test_the_citation_and_the_changelog_are_of_this_release() -> None:
     assert (citation["version"], citation["date-released"]) == (release, DATE)
     headings = re.findall(r"^## (.+)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.M)
     assert next(heading for heading in headings if heading != "Unreleased") == f"{release} ({DATE})"
+
+
+def test_all_packages_are_of_this_release_and_need_each_other_of_it() -> None:
+    folders = [path for path in (ROOT / "packages").glob("*") if not path.name.startswith(".")]
+    for file in (ROOT / "pyproject.toml", *(folder / "pyproject.toml" for folder in folders)):
+        project = tomllib.loads(file.read_text(encoding="utf-8"))["project"]
+        assert project["version"] == version("driveline-damping"), file
+        for needed in project["dependencies"]:
+            name, _, release = needed.partition("==")
+            if name.partition("[")[0] in {folder.name for folder in folders}:
+                assert release == project["version"], (file, needed)
 
 
 def test_workflows_call_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

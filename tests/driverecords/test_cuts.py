@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fmutesting.together import together
 
-from driveline.harness.commands.recorded import instant
+from driverecords.arguments import instant
 from driverecords.drive import read_drive
 from driverecords.measurement import PIECE, read_measurement
 from driverecords.source import RecordingError

@@ -20,7 +20,7 @@ from driveline.harness.loop.places import PLANTS
 from fmublocks.builds import sender_builder
 from fmublocks.native.compiler import host_compiler
 from fmucheck.behaviour_rules import BEHAVIOUR_RULES
-from fmucheck.check import check
+from fmucheck.checking import check
 from fmucheck.claim_rules import CLAIM_RULES, EXCHANGE_CLAIM_RULES, STEPPING_CLAIM_RULES
 from fmucheck.exchange_rules import EXCHANGE_RULES
 from fmucheck.junit import junit
@@ -238,7 +238,7 @@ def test_what_cannot_be_read_or_tried_is_a_finding(tmp_path, monkeypatch):
     with pytest.raises(UserError, match="there is no FMU"):
         findings(tmp_path / "none.fmu")
     rule = Rule("odd", Severity.ERROR, "an error that nobody foresees", problems=os.listdir)
-    monkeypatch.setattr("fmucheck.check.QUICK_RULES", (rule,))
+    monkeypatch.setattr("fmucheck.checking.QUICK_RULES", (rule,))
     severity, text = broken(build_stranger(tmp_path), quick=True)["odd"]
     assert (severity, text.partition(",")[0]) == ("error", "cannot be tried: TypeError: listdir: path should be string")
 

@@ -11,7 +11,7 @@ from fmutesting.foreign.oscillator import DESCRIPTION, WORDS_OF_FMI3, build_osci
 
 from driveline.harness.loop.places import PLANTS
 from fmucheck import exchange_host
-from fmucheck.check import check
+from fmucheck.checking import check
 from fmucheck.claim_rules import CLAIM_RULES, EXCHANGE_CLAIM_RULES
 from fmucheck.exchange_host import integrated
 from fmucheck.exchange_rules import EXCHANGE_RULES

@@ -13,7 +13,7 @@ from driveline.harness.loop.places import NATIVE, PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
-from fmucheck.check import check
+from fmucheck.checking import check
 from fmuloop.wiring import fit
 from tests.fuzz.damage import ODD, spoiled_bytes, spoiled_text
 from tests.fuzz.target import Attempt, Unclean, target

@@ -1,13 +1,10 @@
 /* Loops of FMUs that are linked into one module, for a page: tables.h has the FMUs and the calls of each loop, steps.c,
 which is that of the master, makes them. The page fills in time and inputs, and reads the table. */
-#include "fmi2FunctionTypes.h"
+#include "callbacks.h"
 
 #include "steps.c"
 
 #include <stdio.h>
-#include <stdlib.h>
-
-#define KEPT __attribute__((visibility("default")))
 
 typedef struct {
     const char *guid;
@@ -44,28 +41,7 @@ static double table[ROWS * MOST_BYTES / sizeof(double)];
 #include "tables.h"
 
 static fmi2Component components[sizeof fmus / sizeof *fmus];
-static char message[1024];
 static struct call_record record;
-
-static void log_message(
-    fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category, fmi2String text, ...)
-{
-    (void)environment, (void)name, (void)status, (void)category;
-    size_t length = 0;
-    for (; *text && length + 1 < sizeof message; text++) {
-        message[length++] = *text;
-        text += text[0] == '%' && text[1] == '%'; /* it is a format */
-    }
-    message[length] = '\0';
-}
-
-static const fmi2CallbackFunctions callbacks = {log_message, calloc, free, NULL, NULL};
-
-/* What the last refusal says. */
-KEPT const char *last_message(void)
-{
-    return message;
-}
 
 KEPT void *rows(void)
 {

@@ -5,6 +5,7 @@ from os import PathLike
 from typing import Unpack
 
 from driverecords.drive import Drive
+from driverecords.findings import tell
 from driverecords.plausibility import of_drive
 from fmuloop.argument_kinds import require_each, require_kind
 from toolground.errors import UserError
@@ -18,7 +19,7 @@ from ...manoeuvres.road_load import Track
 from ...manoeuvres.speed_following import require_held
 from .replay import Ride, car_of
 from .replay import replay as rides
-from .verdict import followed_speed, tell
+from .verdict import followed_speed
 
 
 def replay(

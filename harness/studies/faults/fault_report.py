@@ -9,8 +9,8 @@ from rich.table import Table
 
 from toolground.csv_file import write_csv
 from toolground.plain_text import printed
+from toolground.tables import print_table
 
-from ...views.terminal import print_table
 from .fault_campaign import Outcome, count, coverage, judged, plan_of
 from .fault_cases import PLANS, Plan, case
 from .fault_figures import plot_case, plot_matrix, plot_pairs

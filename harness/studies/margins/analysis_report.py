@@ -6,11 +6,11 @@ from pathlib import Path
 from textwrap import fill
 
 from toolground.csv_file import write_rows
+from toolground.tables import plain_table, print_table
 
 from ...metrics.declaration import declared
 from ...views.figure_style import draw
 from ...views.metrics_table import number
-from ...views.terminal import plain_table, print_table
 from .describing_function import LimitCycle
 from .linear_figures import backlash, bode, plot_nyquist, plot_poles
 from .loop_analysis import SPEEDS, Analysis

@@ -9,6 +9,7 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from toolground.plain_text import printed
+from toolground.tables import plain_table, print_table
 
 from ....fmus.building.car_entries import Entry, car
 from ....fmus.building.estimates import DECIDE, SHEET
@@ -17,7 +18,6 @@ from ....models.damping_controller import BLOCK
 from ...design.loop_parameters import loop_parameters
 from ...design.unknowns import COSTS, Unknown
 from ...loop.places import PLANTS
-from ...views.terminal import plain_table, print_table
 from .linear_loop import linear_loop
 from .loop_analysis import point_of
 from .modes import MEANT, Mode, alone, drive_train_mode, is_stable

@@ -10,10 +10,10 @@ from rich.table import Table
 from fmuloop.errors import SimulationError
 from toolground.csv_file import write_csv, write_rows
 from toolground.plain_text import printed
+from toolground.tables import print_table
 
 from ...design.uncertainty_box import Deviation
 from ...views.metrics_table import write_metrics
-from ...views.terminal import print_table
 from .case_runs import CaseRunner
 from .draws import draw
 from .outcome import SHOWN, Outcome

@@ -7,7 +7,7 @@ import pytest
 from fmutesting.foreign.oscillator import DESCRIPTION, DESCRIPTION_3, build_oscillator
 from fmutesting.foreign.stranger import build_stranger
 
-from fmucheck.check import check
+from fmucheck.checking import check
 
 TERMINALS = "terminalsAndIcons/terminalsAndIcons.xml"
 

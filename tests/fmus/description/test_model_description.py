@@ -195,12 +195,12 @@ def test_names_that_differ_in_case_only_are_refused():
 
     fmu = Fmu(replace(block, Input=Twice), stop_time=1.0)
     with pytest.raises(ValueError, match="the variables T_land and t_land differ in case only"):
-        model_description(fmu, BuildKind("", {}, {}, ""), "")
+        model_description(fmu, BuildKind({}, {}, ""), "")
 
 
 @together("name", EVERY)
 def test_the_experiment_that_it_proposes_takes_ten_seconds_and_that_of_the_motor_two(name):
-    text = model_description(EVERY[name], BuildKind("", {}, {}, ""), "").decode()
+    text = model_description(EVERY[name], BuildKind({}, {}, ""), "").decode()
     stop_time = 2 if name == "MotorTorqueLoop" else 10
     assert f'<DefaultExperiment startTime="0" stopTime="{stop_time}.0" stepSize="0.001" />' in text
 
@@ -208,7 +208,7 @@ def test_the_experiment_that_it_proposes_takes_ten_seconds_and_that_of_the_motor
 @every_fmu
 def test_it_says_whose_it_is_and_of_which_release(descriptions, name):
     description = descriptions[name]
-    assert description.generationTool.startswith(f"fmublocks {version('fmublocks')} (")
+    assert description.generationTool.startswith(f"fmublocks {version('fmublocks')}")
     assert (description.version, description.author) == (version("driveline-damping"), "the driveline-damping authors")
     assert "driveline-damping" in description.copyright
     assert description.license.startswith("BSD-3-Clause")
@@ -219,7 +219,7 @@ def test_of_a_block_of_the_users_own_nothing_is_said_that_only_the_user_knows():
     fmu = Fmu(replace(FMUS["WheelSpeedCan"].block, module="my_can"), stop_time=1.0)
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "my_can", sys.modules[__name__])
-        text = model_description(fmu, BuildKind("", {}, {}, ""), "").decode()
+        text = model_description(fmu, BuildKind({}, {}, ""), "").decode()
     assert "author" not in text
     assert "license" not in text
 
@@ -253,7 +253,7 @@ def test_the_documentation_page_tells_of_every_variable(built, name):
 def test_the_page_says_how_often_it_computes(name):
     says = timing(FMUS[name].block)
     assert f" {2 if name == 'DampingController' else 1} ms" in says
-    assert says in page(FMUS[name], BuildKind("", {}, {}, ""))
+    assert says in page(FMUS[name], BuildKind({}, {}, ""))
 
 
 def test_the_picture_has_an_arrow_for_each_input_to_the_box_and_for_each_output_from_it(monkeypatch):

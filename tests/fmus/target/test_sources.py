@@ -22,6 +22,7 @@ from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK as CONTROLLER
 from fmublocks.block.declaration import Enumeration
 from fmublocks.description.variables import interface
+from fmublocks.errors import BuildError
 from fmublocks.native.compiler import CompilerError, host_compiler
 from fmublocks.native.statements import SINGLE
 from fmublocks.target.image import FLAGS, host_program
@@ -154,7 +155,7 @@ int main(void)
 
 
 def test_only_sampled_blocks_run_on_a_target() -> None:
-    with pytest.raises(ValueError, match="TwoMassDriveline is a continuous block"):
+    with pytest.raises(BuildError, match="TwoMassDriveline is a continuous block"):
         target_sources(FMUS["TwoMassDriveline"], SINGLE)
 
 

@@ -2,8 +2,8 @@ from typing import Any
 
 import pytest
 
-from driveline.harness.commands.arguments import filled
 from driveline.harness.commands.cli import main, parser
+from toolground.arguments import filled
 
 Capsys = pytest.CaptureFixture[str]
 

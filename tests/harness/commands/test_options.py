@@ -10,26 +10,16 @@ import pytest
 
 from driveline.fmus.building.parameter_files import seeds
 from driveline.fmus.catalogue import FMUS
-from driveline.harness.commands.options import (
-    Figures,
-    assignment,
-    file,
-    folder,
-    megabytes,
-    output_folder,
-    seconds,
-    seed,
-    share,
-    window,
-)
-from driveline.harness.commands.printing import JsonPrinting, Printing
+from driveline.harness.commands.options import Figures, assignment, seed, window
 from driveline.harness.commands.recorded import Recorded
 from driveline.harness.commands.settings import caption
 from driveline.harness.studies.compare.compare import Case
 from driveline.harness.views.figure_options import FigureOptions
 from fmublocks.block.declaration import Integer, variables
 from tests.harness.commands import Capsys, given
+from toolground.argument_types import file, folder, megabytes, output_folder, seconds, share
 from toolground.errors import UserError
+from toolground.printing import JsonPrinting, Printing
 
 Parse = Callable[[str], Any]
 

@@ -25,9 +25,10 @@ from driveline.harness.views.metrics_table import (
     write_markdown,
     write_metrics,
 )
-from driveline.harness.views.terminal import plain_table, print_table, rides_reasons, rides_table, runs_table
+from driveline.harness.views.terminal import rides_reasons, rides_table, runs_table
 from toolground.atomic_files import complete, remove, write_text
 from toolground.plain_text import reason
+from toolground.tables import plain_table, print_table
 
 
 def metrics(absent=None, **values):

@@ -1,11 +1,17 @@
 """What is looked for in recordings, and what is found."""
 
+import logging
+from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .channels import Channel
+from .source import RecordingError
+
+LOG = logging.getLogger(__name__)
 
 MOST_MARKED = 200
 """Samples of a finding that a figure marks."""
@@ -69,3 +75,16 @@ def marked(times: np.ndarray) -> tuple[float, ...]:
 def more(count: int, what: str = "sample") -> str:
     """How many there are, if it is more than the one that is named."""
     return "" if count == 1 else f" ({count} {what}s)"
+
+
+def tell(findings: Sequence[Finding], recording: PathLike[str] | str, strict: bool = False) -> None:
+    """Logs what is odd in a recording, a warning each.
+
+    Raises:
+        RecordingError: something is, and it is strict.
+    """
+    for finding in findings:
+        LOG.warning("%s: %s", recording, finding)
+    if findings and strict:
+        names = ", ".join(dict.fromkeys(finding.rule.name for finding in findings))
+        raise RecordingError(f"{recording} is not plausible ({names}), which --strict refuses")

@@ -3,7 +3,7 @@ and gives at most one finding a channel: column, time, and what is odd. Nothing 
 """
 
 from collections.abc import Iterator
-from math import pi
+from math import inf, pi
 from shlex import quote
 
 import numpy as np
@@ -105,13 +105,14 @@ RULES = (*CHANNEL_RULES, RATE, CAPPED, SIGN, RATIO, OTHER, FAST, SLOW_TIME, FAST
 """All that is looked for."""
 
 
-def of_drive(drive: Drive, car: Car, T_max: float) -> list[Finding]:
+def of_drive(drive: Drive, car: Car | None = None, T_max: float = inf) -> list[Finding]:
     """What is odd in a drive that a car is to follow. Its rate is not judged where its times are wrong.
 
     Args:
+        car: whose motion it is; None: not known, so that the balance of its forces is not looked at.
         T_max: largest torque of its motor in N.m.
     """
-    motion = list(too_short(drive)) or list(unbalanced(drive, car))
+    motion = list(too_short(drive)) or (list(unbalanced(drive, car)) if car else [])
     rate = [] if any(finding.rule in (SLOW_TIME, FAST_TIME) for finding in motion) else slow_sampling(drive)
     return [*of_channels(drive.channels.values()), *rate, *beyond_T_max(drive, T_max), *motion]
 

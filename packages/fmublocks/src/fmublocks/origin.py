@@ -22,7 +22,7 @@ NATIVE_FOLDER = "native"
 KINDS = (".py", ".c", ".h", ".toml")
 """What sources are."""
 
-TOOLS = {"python": ("pythonfmu",), "native": ("fmpy",)}
+TOOLS: Mapping[str, tuple[str, ...]] = {"python": ("pythonfmu",), "native": ()}
 """Packages that each build is made with."""
 
 

@@ -14,8 +14,8 @@ EARLIEST, LATEST = 315_532_800, 4_354_819_199
 
 
 def tool(library: str) -> str:
-    """What made an FMU: this package, with the help of that library."""
-    return f"fmublocks {version('fmublocks')} ({library})"
+    """What made an FMU: this package, with the help of that library if one is named."""
+    return f"fmublocks {version('fmublocks')}{library and f' ({library})'}"
 
 
 def date() -> datetime:

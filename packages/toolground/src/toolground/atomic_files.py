@@ -2,8 +2,8 @@
 
 import logging
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
 from errno import ELOOP, ENOLCK, ENOSPC, ENOTSUP
 from pathlib import Path
@@ -234,3 +234,10 @@ def write_text(text: str, path: Path) -> None:
     """Writes a text file as UTF-8."""
     with complete(path) as unfinished:
         unfinished.write_text(text, encoding="utf-8")
+
+
+def write_texts(files: Mapping[Path, str]) -> None:
+    """Writes several files, all or none."""
+    with ExitStack() as all_or_none:
+        for path, text in files.items():
+            all_or_none.enter_context(complete(path)).write_text(text, encoding="utf-8")

@@ -8,7 +8,6 @@ class BuildKind:
     """One way to build FMUs.
 
     Attributes:
-        tool: with whose help it was made.
         capabilities: attributes of the element CoSimulation that are not the same in every build.
         model_exchange: attributes of the element ModelExchange that are not the same in every build; none: there is
             no such element.
@@ -20,9 +19,9 @@ class BuildKind:
         version: of FMI.
         picture: path of the picture in the archive, where that version has it.
         has_terminal: it sends its frames over a bus.
+        tool: the library with whose help it was made; empty for none.
     """
 
-    tool: str
     capabilities: dict[str, str]
     log_categories: dict[str, str]
     needs: str
@@ -33,3 +32,4 @@ class BuildKind:
     version: str = "2.0"
     picture: str = "model.png"
     has_terminal: bool = False
+    tool: str = ""

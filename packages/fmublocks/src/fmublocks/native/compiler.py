@@ -10,8 +10,7 @@ from contextlib import contextmanager
 from errno import ENOSPC
 from importlib.util import find_spec
 from pathlib import Path
-
-import fmpy
+from platform import machine
 
 from toolground.child_process import run
 from toolground.errors import full_disk
@@ -58,8 +57,24 @@ WHERE_HEADER = 0x3C
 UNIVERSAL_MAGIC, PAGE_BITS = 0xCAFEBABE, 14
 
 
+LIBRARY_ENDINGS = {"win32": ".dll", "darwin": ".dylib"}
+
+SYSTEMS = {"win32": ("win", "windows"), "darwin": ("darwin", "darwin")}
+"""As FMI 2.0 and FMI 3.0 name them; all others are Linux."""
+
+
 class CompilerError(BuildError):
     """There is no compiler, or it refuses the source; the text says why."""
+
+
+def host_platform(fmi: int = 2) -> str:
+    """The folder of an FMU of that FMI which has the binary for this machine."""
+    system, long_system = SYSTEMS.get(sys.platform, ("linux", "linux"))
+    bits = 64 if sys.maxsize > 2**32 else 32
+    if fmi == 2:
+        return f"{system}{bits}"
+    processor = "aarch64" if machine().lower() in ("aarch64", "arm64") else "x86_64" if bits == 64 else "x86"
+    return f"{processor}-{long_system}"
 
 
 def host_binaries(name: str, sources: Mapping[str, bytes], fmi: int = 2) -> dict[str, bytes]:
@@ -68,8 +83,7 @@ def host_binaries(name: str, sources: Mapping[str, bytes], fmi: int = 2) -> dict
     Raises:
         CompilerError: see there.
     """
-    folder = str(fmpy.platform_tuple if fmi == 3 else fmpy.platform)
-    binary = name + fmpy.sharedLibraryExtension
+    folder, binary = host_platform(fmi), name + LIBRARY_ENDINGS.get(sys.platform, ".so")
     if sys.platform == "win32":
         return {f"binaries/{folder}/{binary}": _compiled_for_windows(zig_compiler(), binary, sources)}
     return {f"binaries/{folder}/{binary}": _compiled(host_command(), binary, sources)}

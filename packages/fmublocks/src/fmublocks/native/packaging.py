@@ -1,8 +1,6 @@
 """Building a native FMU: C source, its binaries, description and documentation in one archive."""
 
 from collections.abc import Callable, Mapping
-from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 
 from ..archive import guid_of, write_archive
@@ -23,7 +21,8 @@ from .trace import trace_frame
 from .xcp import xcp_entries
 
 C_FILES = Path(__file__).parent / "c"
-FMI_HEADERS = Path(str(files("fmpy"))) / "c-code"
+FMI_HEADERS = Path(__file__).parent / "fmi"
+"""Those of the standard, as the Modelica Association publishes them."""
 
 ADAPTERS = {2: ("fmi2.c", "fmi2_adapter.h"), 3: ("fmi3.c", "fmi3_instance.c", "fmi3_refused.c")}
 """Of the core to each FMI."""
@@ -92,9 +91,7 @@ def build_native(
     """
     sends = bool(database)
     kind, describe = native_kind(fmu, fmi, sends), DESCRIPTIONS[fmi]
-    sources = c_sources(fmu, fmi, sends)
-    guid = guid_of(describe(fmu, kind, ""), sources)
-    sources["variables.h"] = variables_header(fmu, guid, fmi).encode()
+    sources, guid = native_sources(fmu, fmi, sends)
     packed = {f"sources/{name}": content for name, content in sources.items()}
     compiled = binaries(fmu.name, sources, fmi)
     packed |= (
@@ -111,6 +108,13 @@ def build_native(
     target = folder / f"{fmu.name}.fmu"
     write_archive(packed, target)
     return target
+
+
+def native_sources(fmu: Fmu, fmi: int = 2, sends: bool = False) -> tuple[dict[str, bytes], str]:
+    """All C files of an FMU by name, and its GUID, which comes from its content."""
+    sources = c_sources(fmu, fmi, sends)
+    guid = guid_of(DESCRIPTIONS[fmi](fmu, native_kind(fmu, fmi, sends), ""), sources)
+    return sources | {"variables.h": variables_header(fmu, guid, fmi).encode()}, guid
 
 
 def c_sources(fmu: Fmu, fmi: int = 2, sends: bool = False) -> dict[str, bytes]:
@@ -151,7 +155,6 @@ def native_kind(fmu: Fmu, fmi: int = 2, sends: bool = False) -> BuildKind:
         3: {"providesDirectionalDerivatives": differentiable},
     }
     return BuildKind(
-        tool=f"FMPy {version('fmpy')}",
         capabilities={"maxOutputDerivativeOrder": "1" if continuous else "0"}
         | of_version[fmi]
         | ({"hasEventMode": "true"} if sends else {}),

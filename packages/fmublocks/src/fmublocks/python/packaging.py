@@ -13,7 +13,6 @@ from pathlib import Path, PurePosixPath
 from threading import Lock
 from types import ModuleType
 
-import fmpy
 from pythonfmu.builder import FmuBuilder
 
 from toolground.errors import full_disk
@@ -23,7 +22,7 @@ from ..description.build_kind import BuildKind
 from ..description.documentation import documentation
 from ..description.model_description import model_description
 from ..fmu import Fmu
-from ..native.compiler import WHOLE, CompilerError, host_binaries
+from ..native.compiler import WHOLE, CompilerError, host_binaries, host_platform
 from ..origin import origin_entry
 from ..protocol import LOG_CATEGORIES, LOG_DISCARD
 from .bundle import bundle, package_name, package_text, script_text
@@ -110,7 +109,7 @@ def _entry(name: str, packed: dict[str, bytes]) -> dict[str, bytes]:
     """Stands between the host and PythonFMU's binary for Linux, which then has another name: entry.c. Without a C
     compiler, and elsewhere, the binary stays alone."""
     binary = f"binaries/linux64/{name}.so"
-    if fmpy.platform != "linux64":
+    if host_platform() != "linux64":
         return {}
     try:
         entry = host_binaries(name, {WHOLE: ENTRY.read_bytes()})

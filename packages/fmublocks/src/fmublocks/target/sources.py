@@ -6,6 +6,7 @@ project, and in single precision if wanted.
 
 from ..block.declaration import Enumeration, variables
 from ..block.types import SampledBlock
+from ..errors import BuildError
 from ..fmu import Fmu
 from ..native.records import Names, records_of, structs
 from ..native.source import functions
@@ -80,11 +81,11 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
     """Headers and source of a sampled block by file name, in C99 that calls nothing but math.h.
 
     Raises:
-        ValueError: the block is continuous.
+        BuildError: the block is continuous.
     """
     block = fmu.block
     if not isinstance(block, SampledBlock):
-        raise ValueError(f"{fmu.name} is a continuous block; only sampled ones run on a target")
+        raise BuildError(f"{fmu.name} is a continuous block; only sampled ones run on a target")
     file = fmu.module.rpartition(".")[2]
     names = Names(precision.real, fmu.name, f"{file}_")
     records = records_of(block)

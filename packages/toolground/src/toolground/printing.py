@@ -7,8 +7,10 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from ..views.figure_options import KINDS
 from .arguments import option, record
+
+FIGURES = (".png", ".pdf", ".svg")
+"""Endings of figures."""
 
 
 @record
@@ -30,7 +32,7 @@ class Printing:
 
     def written(self, paths: Iterable[Path]) -> None:
         """A line for each file that was written, one for all kinds of a figure."""
-        for _, alike in groupby(paths, lambda path: path.with_suffix("") if path.suffix[1:] in KINDS else path):
+        for _, alike in groupby(paths, lambda path: path.with_suffix("") if path.suffix in FIGURES else path):
             first, *others = alike
             beside = f" (and {', '.join(other.suffix for other in others)})" if others else ""
             self.say(f"written: {first}{beside}")
@@ -46,14 +48,3 @@ class JsonPrinting(Printing):
     """Of a command that prints a table."""
 
     json: bool = option(False, "print one JSON document in the place of the table")
-
-
-def write_toml(text: str, path: Path, replace: bool) -> None:
-    """Writes a vehicle file or one of gains; one with another content only if it may be replaced."""
-    from toolground.atomic_files import write_text
-
-    from ..simulation.provenance import require_same_text
-
-    if not replace:
-        require_same_text(text, path)
-    write_text(text, path)

@@ -11,6 +11,7 @@ itself, as in `Arguments(seed=7)`.
 from argparse import ArgumentParser, Namespace, _ActionsContainer
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar, dataclass_transform
 
@@ -53,6 +54,9 @@ def option(
     if read:
         return field(default_factory=lambda: read(default), metadata=said)
     return field(default=default, metadata=said)
+
+
+expert = partial(option, group=EXPERTS)
 
 
 def positional(help: str, parse: Callable[[str], Any], metavar: str, nargs: str | None = None) -> Any:

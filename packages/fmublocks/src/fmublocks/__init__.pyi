@@ -1,0 +1,12 @@
+from .block import operators as operators
+from .block.declaration import Boolean as Boolean
+from .block.declaration import Enumeration as Enumeration
+from .block.declaration import Integer as Integer
+from .block.declaration import Real as Real
+from .block.types import ContinuousBlock as ContinuousBlock
+from .block.types import SampledBlock as SampledBlock
+from .builds import build_fmus as build_fmus
+from .errors import BuildError as BuildError
+from .fmu import Fmu as Fmu
+from .target.sources import target_sources as target_sources
+from .wasm import build_wasm as build_wasm

@@ -1,0 +1,14 @@
+"""`fmublocks`, and `python -m fmublocks`."""
+
+import sys
+
+from toolground.entry import run_process
+
+
+def main() -> int:
+    """Runs the command line in a process that ends with it; returns its exit code."""
+    return run_process("fmublocks", "fmublocks.cli")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,12 @@
+from .errors import SimulationError as SimulationError
+from .errors import WiringError as WiringError
+from .experiment import Experiment as Experiment
+from .limits import Limits as Limits
+from .loading import loaded as loaded
+from .many_runs import run_many as run_many
+from .results import Results as Results
+from .runs import run as run
+from .system import Connection as Connection
+from .system import Port as Port
+from .system import Scheme as Scheme
+from .system import System as System

@@ -1,0 +1,12 @@
+from .arguments import option as option
+from .arguments import positional as positional
+from .arguments import record as record
+from .atomic_files import complete as complete
+from .atomic_files import write_texts as write_texts
+from .errors import MissingExtra as MissingExtra
+from .errors import UserError as UserError
+from .known_names import nearest as nearest
+from .parsers import several_commands as several_commands
+from .parsers import single_command as single_command
+from .program import run_program as run_program
+from .unit_conversion import factor as factor
