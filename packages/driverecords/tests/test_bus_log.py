@@ -321,4 +321,4 @@ def test_a_named_value_of_a_signal_with_a_unit_is_none(tmp_path: Path) -> None:
     databases[0].write_text(DBC + 'VAL_ 256 Motor_Torque 500 "SNA" 300 "Init" ;\n', encoding="ascii")
     found = Channels(path, databases=databases).read("T_mot")["T_mot"]
     np.testing.assert_allclose(found.values, 20.0 + np.round(100.0 * found.time))  # they are filled
-    assert [lack.times.tolist() for lack in found.lacks] == [pytest.approx([0.1, 0.3], abs=1e-6)]
+    assert [missing.times.tolist() for missing in found.missing] == [pytest.approx([0.1, 0.3], abs=1e-6)]

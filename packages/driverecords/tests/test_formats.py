@@ -60,7 +60,7 @@ def test_a_bad_cell_is_named_with_its_line_in_every_text(tmp_path: Path, variant
     else:
         found = read_drive(path)
         assert len(found.time) == 200
-        assert [lack.place for lack in found.channels["v"].lacks] == [f"line {len(lines) - 3}"]
+        assert [missing.place for missing in found.channels["v"].missing] == [f"line {len(lines) - 3}"]
 
 
 @pytest.mark.parametrize("name", ["drive.parquet", "drive.feather"])
@@ -165,7 +165,7 @@ def test_what_a_conversion_says_to_be_no_value_is_none(tmp_path: Path, name: str
     found = read_drive(path)
     assert found.time.tolist() == time[50:].tolist()
     np.testing.assert_allclose(found.v, DRIVE["Velocity"][0][50:] / 3.6, atol=2e-2)
-    assert sum(len(lack.times) for lack in found.channels["v"].lacks) == (51 if "bits" in name else 1)
+    assert sum(len(missing.times) for missing in found.channels["v"].missing) == (51 if "bits" in name else 1)
 
 
 @pytest.mark.parametrize(("name", "package"), [("drive.parquet", "pyarrow.parquet"), ("drive.mf4", "asammdf")])

@@ -13,7 +13,7 @@ from driverecords import channels
 from driverecords.channels import Channels
 from driverecords.quantities import QUANTITIES
 from driverecords.source import Column, RecordingError, Samples
-from driverecords.time_base import Break, clean_pieces, spread, time_breaks
+from driverecords.time_base import Break, clean_pieces, spread_equal_times, time_breaks
 
 JUST = 1e-6
 """How far from the longest step, as a share of it."""
@@ -95,13 +95,22 @@ def test_clean_pieces_are_those_between_the_breaks(
 @pytest.mark.parametrize("resolution", [0.2, 0.25, 0.5])
 def test_equal_times_at_the_resolution_of_the_clock_are_those_of_a_steady_one(resolution: float) -> None:
     time = 5.0 + 0.1 * np.arange(300)
-    np.testing.assert_allclose(spread(np.floor(time / resolution + 1e-9) * resolution), time, atol=0.02)
+    np.testing.assert_allclose(spread_equal_times(np.floor(time / resolution + 1e-9) * resolution), time, atol=0.02)
 
 
 def test_equal_times_of_a_clock_that_is_not_steady_are_spread_up_to_the_next() -> None:
-    assert spread(np.array([0.0, 0.0, 1.0, 5.0, 5.0, 5.0, 5.0, 6.0])).tolist() == [0, 0.5, 1, 5, 5.25, 5.5, 5.75, 6]
+    assert spread_equal_times(np.array([0.0, 0.0, 1.0, 5.0, 5.0, 5.0, 5.0, 6.0])).tolist() == [
+        0,
+        0.5,
+        1,
+        5,
+        5.25,
+        5.5,
+        5.75,
+        6,
+    ]
 
 
 def test_one_pair_of_equal_times_among_many_is_left() -> None:
     time = np.sort(np.append(0.1 * np.arange(200), 5.0))
-    assert spread(time) is time
+    assert spread_equal_times(time) is time

@@ -36,7 +36,7 @@ class ArrowFile:
         self.columns: Sequence[Column] = [_column(field) for field in self._schema]
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`."""
+        """See `driverecords.source.Source.read`."""
         names = [self._schema.field(place).name for place in places]
         table = self._done(lambda: _table(self.path, names))
         return [self._samples(table.column(name), place) for name, place in zip(names, places, strict=True)]

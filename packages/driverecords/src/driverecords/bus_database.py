@@ -36,11 +36,11 @@ def known_messages(databases: Sequence[Path]) -> Messages:
     Raises:
         RecordingError: one is no database.
     """
-    found: dict[tuple[int, bool], list[Known]] = {}
+    by_identifier: dict[tuple[int, bool], list[Known]] = {}
     for path in databases:
         for message in _messages(path):
-            found.setdefault((message.frame_id, message.is_extended_frame), []).append(Known(message, path))
-    return found
+            by_identifier.setdefault((message.frame_id, message.is_extended_frame), []).append(Known(message, path))
+    return by_identifier
 
 
 def the_one(path: Path, known: Sequence[Known]) -> Any:
@@ -66,7 +66,7 @@ def _differences(a: Any, b: Any) -> Iterator[str]:
     for name in sorted(signals[0].keys() ^ signals[1].keys()):
         yield f"signal {plain(name, 60)}, which only one has"
     for name in sorted(signals[0].keys() & signals[1].keys()):
-        one, other = (each[name] for each in signals)
+        one, other = (by_name[name] for by_name in signals)
         for what in COMPARED:
             left, right = getattr(one, what), getattr(other, what)
             if left != right:
@@ -100,7 +100,7 @@ def _messages(path: Path) -> Sequence[Any]:
         raise RecordingError(f"{path} is no database of a bus (DBC, KCD, SYM, ARXML): {plain(error, 200)}") from error
 
 
-def _flagged(found: re.Match[str]) -> str:
+def _flagged(match: re.Match[str]) -> str:
     """The identifier of a DBC with the flag of an extended one, which some tools leave out."""
-    number = int(found[3])
-    return f"{found[1]}{found[2]}{number | FLAG if STANDARD < number <= EXTENDED else number}"
+    number = int(match[3])
+    return f"{match[1]}{match[2]}{number | FLAG if STANDARD < number <= EXTENDED else number}"

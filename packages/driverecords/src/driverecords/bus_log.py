@@ -61,11 +61,11 @@ class BusLog:
         self.columns: Sequence[Column] = _columns(self._places)
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`; signals of a message have the same array of times."""
-        found: dict[int, Samples] = {}
+        """See `driverecords.source.Source.read`; signals of a message have the same array of times."""
+        by_place: dict[int, Samples] = {}
         for kind in dict.fromkeys(self._places[place][0] for place in places):
-            found |= self._decoded(kind, [place for place in places if self._places[place][0] == kind])
-        return [found[place] for place in places]
+            by_place |= self._decoded(kind, [place for place in places if self._places[place][0] == kind])
+        return [by_place[place] for place in places]
 
     def _decoded(self, kind: Kind, places: Sequence[int]) -> dict[int, Samples]:
         """Some signals of a message. Of what its frames hold beside them nothing is kept."""

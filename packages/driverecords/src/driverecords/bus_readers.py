@@ -49,19 +49,19 @@ def asc_lines(lines: Iterable[str]) -> Iterator[str]:
         if line.lower().lstrip().startswith("base"):
             relative, number = "relative" in line.lower(), "d" if "dec" in line.lower() else "X"
             line += "\nno internal events logged\n"  # python-can takes the line behind the head for a part of it
-        elif found := DATE.match(line):
-            date = _seconds(found[1])
+        elif match := DATE.match(line):
+            date = _seconds(match[1])
             begin = date if begin is None else begin
             block = 0.0 if date is None or begin is None else date - begin
             at = max(at, block) if relative else at
-        elif found := STAMP.fullmatch(line):
-            time = float(found[1].replace(",", "."))
+        elif match := STAMP.fullmatch(line):
+            time = float(match[1].replace(",", "."))
             last, at = at, at + time if relative else time + shift
             if at < last < block:
                 shift = block
                 at = time + shift
-            rest, named = EMPTY_FD.fullmatch(found[2]), NAMED.fullmatch(found[2])
-            frame = f"{named[1]}{int(named[3]):{number}}{named[4]}{named[2]}" if named else found[2]
+            rest, named = EMPTY_FD.fullmatch(match[2]), NAMED.fullmatch(match[2])
+            frame = f"{named[1]}{int(named[3]):{number}}{named[4]}{named[2]}" if named else match[2]
             line = f"{at:.9f} {f'{rest[1]} 00' if rest else frame}"
             if " TxRq " in line:
                 continue
@@ -91,21 +91,21 @@ def candump_lines(lines: Iterable[str]) -> Iterator[str]:
     """Lines as `candump -l` writes them, of those and of what it prints. Times are each from the line before (-t d) if
     of those of the first LOOKED_AT lines more than a tenth go back, or if they begin with 0 and do not change."""
     begin = [*islice(lines := iter(lines), LOOKED_AT)]
-    stamps = [found[1] for found in map(CONSOLE.fullmatch, begin) if found and is_number(found[1])]
+    stamps = [match[1] for match in map(CONSOLE.fullmatch, begin) if match and is_number(match[1])]
     steps = [float(b) - float(a) for a, b in pairwise(stamps)]
     steady = len(steps) > 1 and not any(steps[1:]) and float(stamps[0]) == 0.0
     relative, at = steady or 10 * sum(step < 0.0 for step in steps) > len(stamps), 0.0
     for line in chain(begin, lines):
         if line.startswith("#"):
             continue
-        if found := CONSOLE.fullmatch(line):
-            data = found[5].partition("'")[0]
+        if match := CONSOLE.fullmatch(line):
+            data = match[5].partition("'")[0]
             data = "R" if data.startswith("remote") else data.replace(" ", "").strip()
-            mark = "##0" if len(found[4]) > 1 else "#"
-            clock = read_clock(found[1])
-            time = clock.second + DAY * ((clock.day or EPOCH) - EPOCH) if clock else at * relative + float(found[1])
+            mark = "##0" if len(match[4]) > 1 else "#"
+            clock = read_clock(match[1])
+            time = clock.second + DAY * ((clock.day or EPOCH) - EPOCH) if clock else at * relative + float(match[1])
             at = time
-            yield f"({time:.6f}) {found[2]} {found[3]}{mark}{data}\n"
+            yield f"({time:.6f}) {match[2]} {match[3]}{mark}{data}\n"
         else:
             yield line
 

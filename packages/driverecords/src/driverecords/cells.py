@@ -63,15 +63,15 @@ TEXT = re.compile(r"""=?(["'])(?P<inner>.*)\1|'(?P<marked>[^']*)""", re.DOTALL)
 def cleaned(cell: str) -> str:
     """Without blanks and quotes around it, and with plain signs."""
     text = unquoted(cell.translate(SIGNS).strip())
-    if found := NEGATIVE.fullmatch(text):
-        return ((found["plus"] and "+") or "-") + found[found.lastgroup or 0]
+    if match := NEGATIVE.fullmatch(text):
+        return ((match["plus"] and "+") or "-") + match[match.lastgroup or 0]
     return text
 
 
 def unquoted(text: str) -> str:
     """What stands between the quotes."""
-    found = TEXT.fullmatch(text)
-    return (found["inner"] or found["marked"] or "").strip() if found else text
+    match = TEXT.fullmatch(text)
+    return (match["inner"] or match["marked"] or "").strip() if match else text
 
 
 def is_number(cell: str) -> bool:
@@ -90,7 +90,7 @@ def decimal_of(*columns: Sequence[str]) -> str:
     thousands in a column that has whole numbers below thousand without."""
     there = [[text for text in map(cleaned, cells) if NUMBER.fullmatch(text)] for cells in columns]
     sure = [text for texts in there for text in texts if not THOUSANDS.fullmatch(text)]
-    commas, points = (sum(text.rfind(one) > text.rfind(other) for text in sure) for one, other in (",.", ".,"))
+    commas, points = (sum(text.rfind(mark) > text.rfind(other) for text in sure) for mark, other in (",.", ".,"))
     if commas != points:
         return "," if commas > points else "."
     for texts in there:
@@ -122,8 +122,8 @@ def _number(cell: str, decimal: str) -> float | None:
     if is_missing(cell):
         return nan
     text = cleaned(cell)
-    if found := GROUPED[decimal].fullmatch(text):
-        text = text.replace(found[1], "")
+    if match := GROUPED[decimal].fullmatch(text):
+        text = text.replace(match[1], "")
     if decimal == ",":
         if "." in text:
             return None

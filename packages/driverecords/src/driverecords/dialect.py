@@ -61,9 +61,9 @@ class Dialect:
     def names_others(self, line: str) -> bool:
         """Whether a line among the numbers names columns too, and not the same ones."""
         first, *rest = (unquoted(cell.strip()) for cell in line.split(self.separator))
-        found = [*filter(None, (COMMENT.sub("", first, count=1).strip(), *rest))]
+        cells = [*filter(None, (COMMENT.sub("", first, count=1).strip(), *rest))]
         names = [*filter(None, self.names)]
-        return found != names and sum(name in found for name in names) > 1
+        return cells != names and sum(name in cells for name in names) > 1
 
     def is_note(self, line: str) -> bool:
         """Whether a line among the numbers is a comment, or the name of an event."""
@@ -76,12 +76,12 @@ class Dialect:
 def is_comment(first: str, separator: str) -> bool:
     """Whether a row is one by its first cell. A mark alone, or at a number, may be that of an event in the row; before
     a blank that separates it is none. What says that a value is missing, as #N/A, begins none."""
-    found = COMMENT.match(first)
-    if not found or separator == " ":
-        return found is not None
+    mark = COMMENT.match(first)
+    if not mark or separator == " ":
+        return mark is not None
     if is_missing(first):
         return False
-    rest = first[found.end("mark") :].rstrip()
+    rest = first[mark.end("mark") :].rstrip()
     return bool(rest) and (rest != rest.lstrip() or not is_number(rest))
 
 
@@ -96,9 +96,10 @@ def dialect_of(text: str, path: Path) -> Dialect:
         RecordingError: there is no row of names; a cell is longer than any can be.
     """
     excel = EXCEL.match(text)
-    found = {separator: _rows(text, separator, path) for separator in (excel["separator"] if excel else SEPARATORS)}
-    separator = max(found, key=lambda separator: _likely(separator, found[separator]))
-    rows = found[separator][1:] if excel else found[separator]
+    separators = excel["separator"] if excel else SEPARATORS
+    rows_by = {separator: _rows(text, separator, path) for separator in separators}
+    separator = max(rows_by, key=lambda separator: _likely(separator, rows_by[separator]))
+    rows = rows_by[separator][1:] if excel else rows_by[separator]
     if not rows:
         raise RecordingError(f"{path} is empty")
     above, below = _parted(rows, separator)

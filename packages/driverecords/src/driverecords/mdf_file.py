@@ -44,17 +44,17 @@ class MdfFile:
         self.path = path
         self.headings = str(path)
         with _opened(path) as file:
-            found = list(_channels(file))
-            self._master_factors = {group: _master_factor(file, group) for group, _, _ in found}
-        often = Counter(channel.name for _, _, channel in found)
-        self._places = [(group, index) for group, index, _ in found]
+            channels = list(_channels(file))
+            self._master_factors = {group: _master_factor(file, group) for group, _, _ in channels}
+        often = Counter(channel.name for _, _, channel in channels)
+        self._places = [(group, index) for group, index, _ in channels]
         self.columns: Sequence[Column] = [
             _column(channel, f"{channel.name}, group {group + 1}" if often[channel.name] > 1 else channel.name)
-            for group, _, channel in found
+            for group, _, channel in channels
         ]
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`. Samples that the logger has marked as invalid are left out;
+        """See `driverecords.source.Source.read`. Samples that the logger has marked as invalid are left out;
         those for which a conversion gives a text are none; channels of a group have the same array of times."""
         times: dict[int, np.ndarray] = {}
         with _opened(self.path) as file:

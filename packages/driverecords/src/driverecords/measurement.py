@@ -8,9 +8,9 @@ import numpy as np
 
 from .alignment import aligned, is_slower
 from .bounded_reading import bounded
+from .channel_rules import of_channels
 from .channels import Channel, Channels
 from .file_units import FileUnit
-from .plausibility import of_channels
 from .relations import check_relations
 from .signal_checks import check_signal, too_slow
 from .source import RecordingError
@@ -131,9 +131,8 @@ def read_measurement(
     parts.sort(key=lambda part: part["time"][0])
     values = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     headings = {quantity: channels[quantity].heading for quantity in ("T_mot", BASE, "T_ref") if quantity in channels}
-    headings |= {
-        q: " and ".join(channels[one].heading for one in of) for q, of in (("omega_2", wheels), ("T_load", loads))
-    }
+    for quantity, measured in (("omega_2", wheels), ("T_load", loads)):
+        headings[quantity] = " and ".join(channels[wheel].heading for wheel in measured)
     check_relations(path, headings, interval_of(longest["time"]), signals)
     return Measurement(
         path.stem,
@@ -153,7 +152,7 @@ def read_measurement(
 
 def _between(breaks: Sequence[Break], pieces: int) -> list[str]:
     """What to say of what is between pieces."""
-    what = [each.problem for each in breaks[:NAMED]]
+    what = [break_.problem for break_ in breaks[:NAMED]]
     if breaks[NAMED:]:
         what.append(f"and {len(breaks) - NAMED} more")
     used = f"{pieces} pieces are" if pieces > 1 else "one piece is"
@@ -177,21 +176,21 @@ def _written(
     channels: Mapping[str, Channel], wheels: Sequence[str], loads: Sequence[str], i: float, r: float
 ) -> dict[str, FileUnit]:
     """What is on the motor side in the recording is in the file where it was measured."""
-    found = {quantity: channels[quantity].file_unit for quantity in ("T_mot", BASE)}
+    units = {quantity: channels[quantity].file_unit for quantity in ("T_mot", BASE)}
     wheel = channels[wheels[0]]
     if wheels == ("omega_2",):
-        found["omega_2"] = wheel.file_unit._replace(side="motor side")
+        units["omega_2"] = wheel.file_unit._replace(side="motor side")
     elif wheel.unit == "m/s":
-        found["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i / r, "over ground")
+        units["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i / r, "over ground")
     else:
-        found["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i, "wheel side")
+        units["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i, "wheel side")
     if loads:
         load = channels[loads[0]].file_unit
         at_motor = loads == ("T_load",)
-        found["T_load"] = load._replace(
+        units["T_load"] = load._replace(
             factor=load.factor if at_motor else load.factor / i, side="motor side" if at_motor else "wheel side"
         )
-    return found
+    return units
 
 
 def _wheel_speed(

@@ -130,8 +130,8 @@ def holes(time: np.ndarray, values: np.ndarray, longest: float, held: bool) -> H
     if not len(steps) or len(there) == len(values):
         return Holes(values, none, [])
     interval = float(np.median(steps))
-    found = np.flatnonzero((steps > LATE * interval) & (np.diff(there) > 1))
-    short = found[steps[found] - interval <= longest * (1.0 + 1e-6)]
+    gaps = np.flatnonzero((steps > LATE * interval) & (np.diff(there) > 1))
+    short = gaps[steps[gaps] - interval <= longest * (1.0 + 1e-6)]
     between = ((int(there[k]) + 1, int(there[k + 1])) for k in short)
     filled = np.concatenate([none, *(np.arange(first, end) for first, end in between)])
     values = values.copy()
@@ -139,4 +139,4 @@ def holes(time: np.ndarray, values: np.ndarray, longest: float, held: bool) -> H
         values[filled] = values[there[np.searchsorted(there, filled) - 1]]
     else:
         values[filled] = np.interp(time[filled], time[there], values[there])
-    return Holes(values, filled, [(int(there[k]), int(there[k + 1])) for k in np.setdiff1d(found, short)])
+    return Holes(values, filled, [(int(there[k]), int(there[k + 1])) for k in np.setdiff1d(gaps, short)])

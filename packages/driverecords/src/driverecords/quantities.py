@@ -138,8 +138,8 @@ def aliases(*others: Path) -> Aliases:
         for quantity, more in _read(path).items():
             names[quantity] += more
     taken: dict[str, str] = {}
-    for quantity, given in names.items():
-        for name in given:
+    for quantity, spellings in names.items():
+        for name in spellings:
             if taken.setdefault(key(name), quantity) != quantity:
                 file = ", ".join(map(str, others))
                 raise RecordingError(f"{file}: {plain(name, 60)} names both {taken[key(name)]} and {quantity}")

@@ -73,7 +73,7 @@ class TextFile:
         self.columns: Sequence[Column] = _columns(self._dialect, units_beside(path))
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`; lines without a number in these columns are passed over."""
+        """See `driverecords.source.Source.read`; lines without a number in these columns are passed over."""
         pieces: list[Piece] = [
             piece for first, lines in self._pieces() for piece in [self._parsed(lines, places, first)]
         ]
@@ -106,8 +106,8 @@ class TextFile:
             raise RecordingError(f"{self.path} is no text: {error}") from error
 
     def _unquoted(self, line: str) -> str:
-        found = WHOLE.fullmatch(line) if self._in_quotes else None
-        return found[1].replace('""', '"') if found else line
+        match = WHOLE.fullmatch(line) if self._in_quotes else None
+        return match[1].replace('""', '"') if match else line
 
     def _head(self) -> str:
         """Whole lines at the beginning."""
