@@ -83,14 +83,14 @@ CONSOLE = re.compile(
 )
 
 
-LOOKED_AT = 100
+FIRST_LINES = 1000
 """Lines by which it is decided what times of candump are."""
 
 
 def candump_lines(lines: Iterable[str]) -> Iterator[str]:
     """Lines as `candump -l` writes them, of those and of what it prints. Times are each from the line before (-t d) if
-    of those of the first LOOKED_AT lines more than a tenth go back, or if they begin with 0 and do not change."""
-    begin = [*islice(lines := iter(lines), LOOKED_AT)]
+    of those of the FIRST_LINES more than a tenth go back, or if they begin with 0 and do not change."""
+    begin = [*islice(lines := iter(lines), FIRST_LINES)]
     stamps = [match[1] for match in map(CONSOLE.fullmatch, begin) if match and is_number(match[1])]
     steps = [float(b) - float(a) for a, b in pairwise(stamps)]
     steady = len(steps) > 1 and not any(steps[1:]) and float(stamps[0]) == 0.0
