@@ -53,6 +53,7 @@ class ArrowFile:
             try:
                 values = column.cast("double").to_numpy()  # decimals, flags, texts of numbers
             except Exception:  # pyarrow has many
+                # a column of texts has a decimal and marks between thousands of its own, as a text file has
                 texts = [str(cell) for cell in column.to_pylist()]
                 values, unreadable = numbers(texts, decimal_of(texts))
                 return Samples(values, None, Where("row {0}", range(len(values))), unreadable)

@@ -24,7 +24,7 @@ Messages = Mapping[tuple[int, bool], Sequence[Known]]
 
 IDENTIFIER = re.compile(r"\b(BO_|SG_|VAL_|SIG_VALTYPE_|SG_MUL_VAL_|BO_TX_BU_)(\s+)(\d+)(?=\s)")
 STANDARD, EXTENDED = 0x7FF, 0x1FFF_FFFF
-FLAG = 1 << 31
+FLAG = 1 << 31  # of the identifier in a DBC: the frame has an extended one, as cantools expects
 
 COMPARED = ["start", "length", "byte_order", "is_signed", "scale", "offset", "is_float", "unit", "multiplexer_ids"]
 """Of a signal that two databases declare."""
@@ -50,6 +50,7 @@ def the_one(path: Path, known: Sequence[Known]) -> Any:
         RecordingError: they differ; it names the databases.
     """
     first, *others = known
+    # databases of body and drive train share frames; two that contradict each other went through without a word
     for other in others:
         if differs := next(_differences(first.message, other.message), None):
             raise RecordingError(
@@ -82,6 +83,7 @@ def _texts(signal: Any) -> dict[int, str]:
 def without_value(signal: Any) -> list[float]:
     """The values of a signal that are named and stand for none: `65535 "SNA"`. Those of a state or a flag, which has no
     unit and no scale, are its values."""
+    # state 0 "off" and flag 1 "on" are named values too
     if (signal.scale, signal.offset, signal.unit or "") == (1, 0, ""):
         return []
     return [number * signal.scale + signal.offset for number in signal.choices or {}]
@@ -92,8 +94,9 @@ def _messages(path: Path) -> Sequence[Any]:
     if not path.is_file():
         raise RecordingError(f"there is no database {path}")
     try:
+        # a DBC does not declare its encoding: `N·m` stands there in Latin-1 and in UTF-8, with and without a mark
         text = path.read_text(encoding=encoding_of(path))
-        if text.lstrip().startswith("<"):
+        if text.lstrip().startswith("<"):  # KCD and ARXML, which name their encoding
             return cantools.database.load_file(path, strict=False).messages
         return cantools.database.load_string(IDENTIFIER.sub(_flagged, text), strict=False).messages
     except Exception as error:

@@ -34,11 +34,14 @@ EMPTY = frozenset(("", *WORDS.split(), *PHRASES.split("|")))
 SPELLINGS = sorted({spelling for word in EMPTY for spelling in (word, word.upper(), word.title(), word.capitalize())})
 """Of these words, for a parser that looks for them letter by letter."""
 
+# `1.#QNAN00` is of the C of Microsoft, whatever tool was built with it
 NO_NUMBER = re.compile(r"[+-]?(1\.#(qnan|snan|ind|nan)0*|nan\(\w*\))|#\w+[!?]|[-.,#*]+")
 """As libraries of C print it, errors of spreadsheets, and what displays show."""
 
 NUMBER = re.compile(
-    r"[+-]?(\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+|d[+-]\d+)?", re.ASCII | re.IGNORECASE
+    # an exponent with D needs its sign, which Fortran always writes: 1D2 may be anything
+    r"[+-]?(\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+|d[+-]\d+)?",
+    re.ASCII | re.IGNORECASE,
 )
 
 GROUPED = {
@@ -90,6 +93,7 @@ def decimal_of(*columns: Sequence[str]) -> str:
     thousands in a column that has whole numbers below thousand without."""
     there = [[text for text in map(cleaned, cells) if NUMBER.fullmatch(text)] for cells in columns]
     sure = [text for texts in there for text in texts if not THOUSANDS.fullmatch(text)]
+    # 36,52 and 36.52 are sure; 1.520 may be a height of 1520 m in a German file
     commas, points = (sum(text.rfind(mark) > text.rfind(other) for text in sure) for mark, other in (",.", ".,"))
     if commas != points:
         return "," if commas > points else "."
@@ -125,6 +129,7 @@ def _number(cell: str, decimal: str) -> float | None:
     if match := GROUPED[decimal].fullmatch(text):
         text = text.replace(match[1], "")
     if decimal == ",":
+        # a point among decimal commas may part thousands or decimals, so it is refused
         if "." in text:
             return None
         text = text.replace(",", ".")

@@ -156,8 +156,10 @@ def excursions(channel: Channel) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """By their width, indices of the samples that leave their neighbours far enough to be spikes, and how far, over the
     range of these."""
     x = channel.values
+    # a flag leaves its neighbours whenever it is set
     if len(x) <= 2 * (NEIGHBOURS + WIDEST) or channel.unit == "1":
         return
+    # the median takes the spikes out of the range that they are compared with
     smallest = max(LARGE * float(np.ptp(_smooth(x, WIDEST))), _smallest(channel))
     for width in range(1, WIDEST + 1):
         if width == 1 or width * channel.interval <= BRIEF * (1.0 + 1e-6):
@@ -223,6 +225,7 @@ def uncertain(channel: Channel) -> Iterator[Finding]:
 def unwrapped(counter: Channel) -> tuple[np.ndarray, np.ndarray]:
     """What a counter has that does not run over, and the indices of the samples where this is uncertain."""
     largest = counter.values.max()
+    # a counter of 4, 8 or 16 bits that ran over went backwards, and put the controller into fallback
     period = next((period for period in PERIODS if period > largest), PERIODS[-1])
     values = np.unwrap(counter.values, period=period)
     steps, frames = np.diff(values), np.diff(counter.time) / FRAME

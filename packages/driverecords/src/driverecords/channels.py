@@ -38,6 +38,7 @@ LONGEST_CELL = 100
 """Characters of a cell that are shown."""
 
 
+# without a limit a recording whose last third cannot be read was cut without a word
 FOOTER = 20
 """Rows without a time above the first one and below the last one, that a logger may write."""
 
@@ -184,6 +185,7 @@ class Channels:
         times = [] if self._source.own_time else self._chooser.times()
         choices = [self._chooser.needed(quantity) for quantity in quantities]
         first = next(iter(times), None)
+        # of `Time;Velocity;Time;Motor Torque` each time holds for the columns behind it
         before = [next((time for time in reversed(times) if time.place < choice.place), first) for choice in choices]
         clocks = [time for time in times if time in before]
         samples = self._source.read([choice.place for choice in (*clocks, *choices)])
@@ -201,6 +203,7 @@ class Channels:
                 channels[choice.quantity] = channel
                 breaks += more
         for together in _by_time(channels.values()):
+            # a message may stay away for long, but not in rows that it shares with a sensor
             gap = inf if drawn else min(QUANTITIES[channel.quantity].gap for channel in together)
             breaks += time_breaks(self.path, together[0].time, together[0].where, gap, jumps=drawn)
         breaks += [break_ for channel in channels.values() for break_ in _beyond_limit(self.path, channel)]
@@ -260,6 +263,7 @@ class Channels:
         assert time is not None, "a file has a column of time, or its channels have their own"
         index = np.flatnonzero(self._inside(time, begin))
         time, written = time[index], samples.values[index]
+        # 255 and 65535 are values of a counter
         is_code = np.zeros(len(index), dtype=bool) if drawn or declared.unit == "1" else coded(written)
         filling = holes(
             time, np.where(is_code, np.nan, written), inf if drawn else max(FILLED, declared.hole), declared.held
@@ -291,6 +295,7 @@ class Channels:
             )
         missing = [MissingSamples(code, time[at], where(at[0])) for code, at in without_value.items() if len(at)]
         time = time[kept] if drawn else spread_equal_times(time[kept])
+        # some loggers write a row twice
         if not drawn and len(once := _not_twice(time, filling.values[kept])) < len(time):
             time, kept = time[once], kept[once]
         if len(kept) < LEAST:
@@ -364,6 +369,7 @@ def _beyond_limit(path: Path, channel: Channel) -> list[Break]:
     """Where a value is larger than any car has."""
     limit = QUANTITIES[channel.quantity].limit
     beyond = np.flatnonzero(np.abs(channel.values) > limit)
+    # with a wrong unit all samples are beyond
     few, breaks = len(beyond) <= MOST, []
     for k in beyond[:MOST].tolist():
         problem = (

@@ -27,6 +27,7 @@ NAMED = rf"(?P<name>{'|'.join(sorted(MONTHS, key=len, reverse=True))})[a-z]*"
 WEEKDAY = r"(?:[a-z]+[.,]{0,2} +)?"
 
 TIME = re.compile(
+    # VBOX writes 101557.00 without colons, others 10:15:30:500 or 10h15m30s
     r"(?P<date>.*?)(?:[T ,:] *)?(?P<hour>\d\d?)(?P<colon>[:h]?)(?P<minute>[0-5]\d)(?:(?P=colon)|m)"
     r"(?P<second>[0-5]\d(?:[.,:]\d+)?)s? ?(?P<half>[AP]\.?M\.?|vorm\.?|nachm\.?)?"
     r"(?P<zone>Z| ?UTC| ?GMT| ?(?P<ahead>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d)?)?"
@@ -38,6 +39,7 @@ TIME = re.compile(
 DATES = tuple(
     re.compile(form, re.IGNORECASE)
     for form in (
+        # 20260105 has all of its digits: 2026111 is the 11th of January or the 1st of November
         r"(?!\d{1,7}$)(?P<year>\d{4})(?P<mark>[-/.年]?)(?P<month>\d\d?)(?:(?P=mark)|月)(?P<day>\d\d?)日?",
         r"(?P<first>\d\d?)(?P<mark>[-/.])(?P<second>\d\d?)(?P=mark)(?P<year>\d{4}|\d\d)",
         rf"{WEEKDAY}(?P<day>\d\d?)[-. ]+{NAMED}[-,. ]+(?P<year>\d{{4}}|\d\d)",
@@ -63,6 +65,7 @@ LENGTHS = {
 
 PART = re.compile(rf"(\d+(?:\.\d*)?(?:e[+-]?\d+)?)\s*({'|'.join(sorted(LENGTHS, key=len, reverse=True))})(?![a-su-zµ])")
 DURATION = re.compile(
+    # pandas writes `0 days 00:00:00.1`, Python `1 day, 0:00:00.1`, ISO 8601 `P0DT0H0M0.1S`
     rf"(?P<sign>[+-]?)p?(?P<parts>(?:t?{PART.pattern}[\s.]*)*)[t+]?(?P<clock>\d+:[0-5]\d:[0-5]\d(?:\.\d*)?)?"
 )
 """`0.1 sec`, `1 min 2.5 s`, `0 days 00:00:00.1`, and PT0.1S of ISO 8601, in small letters."""
@@ -93,6 +96,7 @@ class Clock(NamedTuple):
         if `last` seconds after it this clock has not come yet."""
         within = self.second - begin.second
         if self.ahead is not None and begin.ahead is not None:
+            # a clock that is set back in October goes on by its zone
             within -= self.ahead - begin.ahead
         if self.day is not None and begin.day is not None:
             return DAY * (self.day - begin.day) + within
@@ -112,6 +116,7 @@ def read_clock(text: str, month_first: bool = True) -> Clock | None:
         month_first: in a date in numbers with slashes.
     """
     if not text.isascii():
+        # août, févr., and the narrow blank that newer systems put before AM
         text = "".join(letter for letter in normalize("NFKD", text) if not combining(letter))
     match = TIME.fullmatch(" ".join(text.split()))
     if not match:
@@ -196,6 +201,7 @@ def _since(clocks: Sequence[Clock | None]) -> tuple[np.ndarray, Clock | None]:
 def _unwrapped(times: np.ndarray, period: float) -> np.ndarray:
     """Times that begin again after a period."""
     there = np.isfinite(times)
+    # a step back by less is a row out of its place, which is refused by name
     turns = np.append(0.0, np.cumsum(np.diff(times[there]) < -0.5 * period))[: there.sum()]
     times = times.copy()
     times[there] += period * turns

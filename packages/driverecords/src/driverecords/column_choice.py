@@ -71,6 +71,7 @@ class Chooser:
     def absence(self, missing: Sequence[str]) -> RecordingError:
         """What to say of quantities that no column holds."""
         examples = ", ".join(example(quantity, self.names) for quantity in missing)
+        # all at once: it took a try for each column that was not there
         if missing[1:]:
             names = plain(", ".join(column.name for column in self.source.columns))
             which = " or ".join(missing)
@@ -118,6 +119,7 @@ class Chooser:
         """The columns that may hold a quantity, by their names and units."""
         sure, open_ = self._named(self.names[quantity]), self._named(BY_UNIT.get(quantity, ()))
         unitless = [(place, unit) for place, unit in sure if unit is None]
+        # of `Speed [km/h]` and `Speed [rpm]` the unit tells which is that of the vehicle
         return _fitting(quantity, sure) or unitless or _fitting(quantity, open_) or sure or self._below(quantity)
 
     def _named(self, names: Sequence[str]) -> list[Place]:
@@ -171,6 +173,7 @@ class Chooser:
         declared = QUANTITIES[quantity]
         mended = f"--column {quantity}={quote(f'{column.name} [{declared.file_unit}]')}"
         if unit is None and declared.unit != "1":
+            # a date of a form that is not read was asked for a unit, and with one was said to be no number
             clock = f" (a time of day needs none, such as {EXAMPLES})" if quantity == "time" else ""
             raise RecordingError(
                 f"{self.source.headings}: {column.heading} has no unit; write one into the heading, as in "
@@ -216,6 +219,7 @@ def _readings(column: Column) -> list[tuple[str, str | None]]:
 
 def doubled(source: Source, quantity: str, headings: Sequence[str]) -> RecordingError:
     """What to say of several columns that could hold a quantity."""
+    # no option tells two of the same heading apart
     distinct = [heading for heading in headings if headings.count(heading) == 1]
     if not distinct:
         called = f"{len(headings)} columns are called {headings[0]}; rename all but one in the file"

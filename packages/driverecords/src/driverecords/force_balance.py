@@ -79,6 +79,7 @@ def forces(time: np.ndarray, v: np.ndarray, T_mot: np.ndarray, car: Car) -> Forc
     """Those of a motion (m/s over s) and the torque of the motor (N.m)."""
     from scipy.ndimage import gaussian_filter1d
 
+    # all samples of 6 min at 1 kHz took 1.3 s, of a torque that is too small 7.6 s; means over EVERY take 0.1 s
     count = max(1, min(int(EVERY / interval_of(time)), len(time) // LEAST))
     time, v, T_mot = (x[: len(x) // count * count].reshape(-1, count).mean(axis=1) for x in (time, v, T_mot))
     interval = interval_of(time)
@@ -120,6 +121,8 @@ def balance(along: Forces, torque: float = 1.0) -> Balance:
     pushes = rolls & (gives > FORCE)
     result = Balance(worst=float(along.time[np.argmax(np.where(rolls, np.abs(takes - gives), 0.0))]))
     if rolls.sum() >= LEAST:
+        # what drives a car is its motor or a hill, never a brake: a torque that stays where it is, or is a minute late,
+        # shows
         drive_force, motor_force = (np.maximum(force[rolls], 0.0) for force in (takes, gives))
         result = result._replace(driven=float(np.std(drive_force)), with_motor=compared(drive_force, motor_force)[0])
     if rolls.sum() >= LEAST and np.std(gives[rolls]) > FORCE:

@@ -44,6 +44,7 @@ def without_brackets(name: str) -> Iterator[tuple[str, str]]:
     for form in BEHIND:
         if match := form.fullmatch(name):
             yield match["name"].strip(), match["unit"].strip(" ()")
+    # MATLAB makes Velocity__km_h_ of `Velocity [km/h]`, R Velocity..km.h.
     words = [word for word in re.split(r"[._]+", name) if word]
     for count in range(1, min(len(words), 3)):
         yield "_".join(words[:-count]), "/".join(words[-count:])

@@ -105,6 +105,7 @@ def read_measurement(
     _require_columns(recording, BASE, "T_mot", *wheels)
     held = [quantity for quantity in HELD if recording.has(quantity)]
     needed = (BASE, "T_mot", *wheels, *loads, *held)
+    # one gap made a recording useless, though the filter can begin anew behind it
     pieces, breaks = recording.read_pieces(*needed, optional=(*loads, *held), shortest=PIECE)
     pieces.sort(key=lambda piece: -np.ptp(piece[BASE].time))
     channels = pieces[0]  # the longest, by which the recording is judged
@@ -163,6 +164,7 @@ def _require_columns(recording: Channels, *needed: str) -> None:
     """Refuses a recording with columns that are missing, and says too which samples are too far apart."""
     if missing := recording.missing(*needed):
         there = [] if "time" in missing else [quantity for quantity in needed if quantity not in missing]
+        # else the rate is refused in the try after the last column is named
         slow = filter(None, map(too_slow, recording.read(*there).values() if there else ()))
         raise RecordingError("; ".join([str(recording.absence(missing)), *slow]))
 

@@ -112,6 +112,7 @@ def of_drive(drive: Drive, car: Car, T_max: float) -> list[Finding]:
         T_max: largest torque of its motor in N.m.
     """
     motion = list(too_short(drive)) or list(unbalanced(drive, car))
+    # ms called s are a slow rate as well, whose line stood before the one that explains it
     rate = [] if any(finding.rule in (SLOW_TIME, FAST_TIME) for finding in motion) else slow_sampling(drive)
     return [*of_channels(drive.channels.values()), *rate, *beyond_T_max(drive, T_max), *motion]
 
@@ -178,6 +179,7 @@ def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
             f"wrong; {_column_option('T_mot', f'-{torque}')} turns it"
         )
         yield Finding(SIGN, torque, at, odd)
+    # in ms the Gaussian would go over a million samples: 10 min at 1 kHz would take half an hour
     elif result.judged and result.together < TOGETHER and MS * interval_of(drive.time) >= SHORTEST and fits(time=MS):
         clock = drive.clock
         odd = (

@@ -120,6 +120,7 @@ def _check_links(path: Path, headings: Mapping[str, str], interval: float, signa
     T, omega = max(correlations, key=lambda pair: abs(correlations[pair]))
     link = correlations[T, omega]
     expected = (T, omega) == ("T_mot", "omega_1")
+    # a car with a wide gap was refused for channels that were not exchanged
     if abs(link) < (LINK if expected else OTHERS):
         return  # too little excitation to tell
     finding = f"{headings[omega]} follows {headings[T]} (correlation {link:.2f} from {FAST[0]:g} to {FAST[1]:g} Hz)"

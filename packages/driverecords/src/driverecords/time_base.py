@@ -11,6 +11,7 @@ from .clock_times import Clock
 from .source import RecordingError
 from .thresholds import Threshold
 
+# times 1e300 ended in a ZeroDivisionError of scipy, times 1e-320 in an OverflowError of the balance of forces
 INTERVALS = (1e-6, 1e6)
 """In s, of a recording: times in another unit than they are called are within, and filters of signals can be made."""
 
