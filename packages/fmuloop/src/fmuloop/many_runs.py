@@ -161,8 +161,8 @@ def _in_workers(
         workers = Workers(function, count, Path(folder))
 
         def answered(cases: Iterable[Case]) -> Iterator[Answer]:
-            for each in in_order(workers.submit, batched(cases, batch), AHEAD * count, workers.mend):
-                yield from _gathered(each, workers.submit_alone, Lost)
+            for submitted in in_order(workers.submit, batched(cases, batch), AHEAD * count, workers.mend):
+                yield from _gathered(submitted, workers.submit_alone, Lost)
 
         unfinished = True
         try:
@@ -182,8 +182,8 @@ def _on_executor(
     submit = submitting(function, executor)
 
     def answered(cases: Iterable[Case]) -> Iterator[Answer]:
-        for each in in_order(submit, batched(cases, batch), MOST_UNDER_WAY):
-            yield from _gathered(each, submit, losses())
+        for submitted in in_order(submit, batched(cases, batch), MOST_UNDER_WAY):
+            yield from _gathered(submitted, submit, losses())
 
     yield answered
 

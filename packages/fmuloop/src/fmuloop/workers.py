@@ -86,16 +86,16 @@ class Workers:
         """
         if waiting[0].again or not _is_lost(waiting[0].future):
             return
-        lost = [_is_lost(each.future) and not each.again for each in waiting]
+        lost = [_is_lost(submitted.future) and not submitted.again for submitted in waiting]
         self._begin_again()
         mended: list[Submitted] = []
-        for each, is_lost, before in zip(waiting, lost, accumulate(lost), strict=True):
+        for submitted, is_lost, before in zip(waiting, lost, accumulate(lost), strict=True):
             suspected = is_lost and before <= self._count
-            mended += map(self._by_itself, each.batch) if suspected else [each]
+            mended += map(self._by_itself, submitted.batch) if suspected else [submitted]
         waiting.clear()
-        for each in mended:
-            left = not each.again and _is_lost(each.future)
-            waiting.append(each._replace(future=self.submit(each.batch)) if left else each)
+        for submitted in mended:
+            is_lost_again = not submitted.again and _is_lost(submitted.future)
+            waiting.append(submitted._replace(future=self.submit(submitted.batch)) if is_lost_again else submitted)
 
     def _by_itself(self, case: Any) -> "Submitted":
         alone = Submitted([case], self.submit([case]), again=True)

@@ -79,13 +79,13 @@ class Implicit:
         order = factorised(rows, 1.0 / (h * GAMMA))
         if not order:
             return x, math.inf
-        at, rate, found = x, dx, Matrix()
+        at, rate, stages = x, dx, Matrix()
         for i, (weights, rates) in enumerate(zip(A, G, strict=True)):
             if i > 0:
-                at = self._State._make(x[n] + weighted(weights, found, n) for n in self._size)
+                at = self._State._make(x[n] + weighted(weights, stages, n) for n in self._size)
                 rate = self._derivative(at, u, p)
-            found.append(solved(rows, order, [rate[n] + weighted(rates, found, n) / h for n in self._size]))
-        last = found[-1]
+            stages.append(solved(rows, order, [rate[n] + weighted(rates, stages, n) / h for n in self._size]))
+        last = stages[-1]
         end = self._State._make(at[n] + last[n] for n in self._size)
         total = 0.0
         for n in self._size:
@@ -99,10 +99,10 @@ class Implicit:
         return self._State._fields[max(self._size, key=lambda n: changes[n])]
 
 
-def weighted(weights: tuple[float, ...], found: Matrix, n: int) -> float:
+def weighted(weights: tuple[float, ...], stages: Matrix, n: int) -> float:
     total = 0.0
     for j, weight in enumerate(weights):
-        total += weight * found[j][n]
+        total += weight * stages[j][n]
     return total
 
 

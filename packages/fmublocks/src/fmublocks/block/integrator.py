@@ -171,14 +171,14 @@ class Integrator:
             return []
         end = self.event_indicators(x_end, start.u, start.p)
         straight = self.event_indicators(self.tangent(*start[:4], h), start.u, start.p)
-        found: list[tuple[float, int]] = []
+        crossings: list[tuple[float, int]] = []
         for n, side in enumerate(sides):
             beyond = h if is_beyond(end[n], side) else None
             if beyond is None and is_beyond(straight[n], side):
                 beyond = self._excursion(n, start, h, x_end, side)
             if beyond is not None:
-                found.append((self._locate(n, start, beyond, side), n))
-        return found
+                crossings.append((self._locate(n, start, beyond, side), n))
+        return crossings
 
     def _indicator(self, n: int, x: Record, start: Start) -> float:
         return self.event_indicators(x, start.u, start.p)[n]
