@@ -21,8 +21,7 @@ from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import MOTOR, PLANT, records
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.redesign import REDESIGN_MANOEUVRES
-from driveline.harness.identification.car_file import found as rows_of
-from driveline.harness.identification.car_file import identified_car
+from driveline.harness.identification.car_file import identified_car, rows_of
 from driveline.harness.identification.drive_train_response import response
 from driveline.harness.identification.estimator import Z_95, Found, search
 from driveline.harness.identification.identify import FREE, Identified, of_sensors

@@ -83,7 +83,7 @@ def loops_of(fits: Mapping[str, Fit], are_ours: bool) -> dict[str, Any]:
     """
     if are_ours:
         return standard()
-    paths = dict.fromkeys(each.path for fitted in fits.values() for each in fitted.interfaces.values())
+    paths = dict.fromkeys(interface.path for fitted in fits.values() for interface in fitted.interfaces.values())
     return _kept(digest_of([repr(list(fits)).encode(), *(path.read_bytes() for path in paths)]), lambda: build(fits))
 
 
@@ -108,8 +108,8 @@ def require_possible() -> None:
 
 def _packaged() -> dict[str, Any] | None:
     """The loops that were made with the package, if they are those of the sources that are here."""
-    found = json.loads(PACKAGED.read_text(encoding="utf-8")) if PACKAGED.is_file() else {}
-    return found if found.get("made_of") == _standard_digest() else None
+    content = json.loads(PACKAGED.read_text(encoding="utf-8")) if PACKAGED.is_file() else {}
+    return content if content.get("made_of") == _standard_digest() else None
 
 
 def _place(made_of: str) -> Path:
@@ -123,10 +123,10 @@ def write_standard(path: Path = PACKAGED) -> None:
     Raises:
         UserError: there is no Zig.
     """
-    made = _standard()
-    made.content["made_of"] = _standard_digest()
+    module = _standard()
+    module.content["made_of"] = _standard_digest()
     with complete(path) as unfinished:
-        unfinished.write_text(made.packed(), encoding="utf-8")
+        unfinished.write_text(module.packed(), encoding="utf-8")
 
 
 def _standard_digest() -> str:
@@ -138,9 +138,9 @@ def _kept(made_of: str, make: Callable[[], Module]) -> dict[str, Any]:
 
     def write(path: Path) -> None:
         warn_once("compiling the loops of the page, once for these FMUs: takes half a minute")
-        made = make()
-        made.content["made_of"] = made_of
-        path.write_text(made.packed(), encoding="utf-8")
+        module = make()
+        module.content["made_of"] = made_of
+        path.write_text(module.packed(), encoding="utf-8")
 
     path = _place(made_of)
     with named_as_cache(path.parents[1]):
@@ -148,8 +148,8 @@ def _kept(made_of: str, make: Callable[[], Module]) -> dict[str, Any]:
 
 
 def _standard() -> Module:
-    with built_as_sources() as given:
-        return build({named(*key): fit(system_of(settings)) for key, settings in given.items()})
+    with built_as_sources() as settings_of:
+        return build({named(*key): fit(system_of(settings)) for key, settings in settings_of.items()})
 
 
 @contextmanager
@@ -158,7 +158,7 @@ def built_as_sources() -> Iterator[dict[tuple[str, str], Settings]]:
     there within it."""
     with TemporaryDirectory() as folder, ThreadPoolExecutor() as pool:
         without_binary = partial(build_native, folder=Path(folder) / NATIVE, binaries=lambda *_: {})
-        list(pool.map(without_binary, (EVERY[name] for each in PLACES.values() for name in each)))
+        list(pool.map(without_binary, (EVERY[name] for names in PLACES.values() for name in names)))
         yield {
             (plant, controller): Settings(plant, controller, folder=Path(folder), build=NATIVE)
             for plant in PLACES["plant"]
@@ -169,7 +169,7 @@ def built_as_sources() -> Iterator[dict[tuple[str, str], Settings]]:
 def digest_of(sources: Iterable[bytes]) -> str:
     """Of what a module is made of, beside the code that makes it."""
     own = [file.read_bytes() for file in (*C_FILES, STEPS, Path(__file__), HERE / "tables.py")]
-    return hashlib.sha256(b"".join(hashlib.sha256(each).digest() for each in (*own, *sources))).hexdigest()
+    return hashlib.sha256(b"".join(hashlib.sha256(source).digest() for source in (*own, *sources))).hexdigest()
 
 
 def build(fits: Mapping[str, Fit], columns: Sequence[str] = COLUMNS) -> Module:
@@ -182,11 +182,11 @@ def build(fits: Mapping[str, Fit], columns: Sequence[str] = COLUMNS) -> Module:
         CompilerError: Zig refuses a source.
         UserError: there is no Zig, or an FMU has no C source of FMI 2.0.
     """
-    fmus = {each.identifier: each for fitted in fits.values() for each in fitted.interfaces.values()}
+    fmus = {interface.identifier: interface for fitted in fits.values() for interface in fitted.interfaces.values()}
     sources = {name: sources_of(interface) for name, interface in fmus.items()}
     names = list(fmus)
     loops = [loop(k, fitted, _inputs(fitted), names) for k, fitted in enumerate(fits.values())]
-    exchanging = frozenset(name for name, each in fmus.items() if each.description.modelExchange)
+    exchanging = frozenset(name for name, interface in fmus.items() if interface.description.modelExchange)
     guids = {name: str(interface.description.guid) for name, interface in fmus.items()}
     code = _linked(sources, tables(loops, guids, exchanging), loops)
     return Module(
@@ -195,7 +195,7 @@ def build(fits: Mapping[str, Fit], columns: Sequence[str] = COLUMNS) -> Module:
             "rows": ROWS,
             "fmus": {name: _fmu(interface, sources[name]) for name, interface in fmus.items()},
             "loops": {
-                name: _loop(fitted, made, columns) for (name, fitted), made in zip(fits.items(), loops, strict=True)
+                name: _loop(fitted, own, columns) for (name, fitted), own in zip(fits.items(), loops, strict=True)
             },
         },
     )
@@ -208,16 +208,16 @@ def sources_of(interface: Interface) -> dict[str, bytes]:
         UserError: it has none of FMI 2.0.
     """
     with zipfile.ZipFile(interface.path) as archive:
-        found = {
+        sources = {
             name.removeprefix(SOURCES): archive.read(name) for name in archive.namelist() if name.startswith(SOURCES)
         }
-    if WHOLE not in found or interface.fmi != 2:
+    if WHOLE not in sources or interface.fmi != 2:
         raise UserError(
             f"{interface.path}: a page has loops of FMUs that were built from Python by `driveline build`, "
             "whose C source is in them (build/native has those); "
             "`driveline compare --report` and `simulate` run every FMU"
         )
-    return found
+    return sources
 
 
 def _inputs(fitted: Fit) -> list[str]:
@@ -236,7 +236,7 @@ def _zig() -> list[str]:
 
 def _linked(sources: Mapping[str, Mapping[str, bytes]], head: str, loops: Sequence[Loop]) -> bytes:
     zig = [*_zig(), *TARGET]
-    most = max(each.layout.dtype.itemsize for each in loops)
+    most = max(loop.layout.dtype.itemsize for loop in loops)
     defined = (f"-DROWS={ROWS}", f"-DMOST_BYTES={-(-most // 8) * 8}", "-DMOST_ROUNDS=16")
     own = {
         **{file.name: file.read_bytes() for file in C_FILES},
@@ -251,8 +251,8 @@ def _linked(sources: Mapping[str, Mapping[str, bytes]], head: str, loops: Sequen
             return compile_in([*zig, *FLAGS, *FAST, prefix, "-c", WHOLE, "-o", f"{name}.o"], f"{name}.o", sources[name])
 
         folder = Path(temporary)
-        for name, made in zip(sources, pool.map(compiled, sources), strict=True):
-            (folder / f"{name}.o").write_bytes(made)
+        for name, object_file in zip(sources, pool.map(compiled, sources), strict=True):
+            (folder / f"{name}.o").write_bytes(object_file)
         for name, content in own.items():
             (folder / name).write_bytes(content)
         objects = [f"{name}.o" for name in sources]
@@ -293,16 +293,16 @@ def number(value: Any) -> float | None:
     return float(value == "true") if value in ("true", "false") else float(value)
 
 
-def _loop(fitted: Fit, made: Loop, columns: Sequence[str]) -> dict[str, Any]:
-    layout = made.layout
+def _loop(fitted: Fit, loop: Loop, columns: Sequence[str]) -> dict[str, Any]:
+    layout = loop.layout
 
     def is_real(name: str) -> bool:
         instance, _, own = name.partition(".")
         return type_of(fitted.interfaces[instance].variables[own]) == "Real"
 
     return {
-        "instances": {name: each.identifier for name, each in fitted.interfaces.items()},
+        "instances": {name: interface.identifier for name, interface in fitted.interfaces.items()},
         "size": layout.dtype.itemsize,
-        "inputs": {name: [layout.offset(name), int(is_real(name))] for name in made.inputs},
+        "inputs": {name: [layout.offset(name), int(is_real(name))] for name in loop.inputs},
         "columns": {name: layout.offset(name) for name in columns if name in (layout.dtype.names or ())},
     }
