@@ -54,6 +54,7 @@ def standard(interface: Interface) -> list[str]:
     return []
 
 
+# fmpy takes 1.4 ms a name to parse this
 _QUOTED = r"""'(?:[\w!#$%&()*+,\-./:;<>=?@\[\]^{}|~ ]|\\['"?\\abfnrtv])+'"""
 _PART = rf"(?:[A-Za-z_][A-Za-z0-9_]*|{_QUOTED})(?:\[\d+(?:,\d+)*\])?"
 _PATH = rf"{_PART}(?:\.{_PART})*"
@@ -129,6 +130,7 @@ def _is_initial_unknown(variable: Declared) -> bool:
     """Of FMI 2.0 and 3.0; clocks and what is clocked have no value in initialization mode."""
     if variable.model.causality == "calculatedParameter":
         return True
+    # fmpy asks for clocks among the InitialUnknowns
     timed = variable.type == "Clock" or "clocks" in variable.attributes
     return variable.model.causality == "output" and variable.model.initial in ("approx", "calculated") and not timed
 
@@ -426,6 +428,7 @@ def execution_tool(interface: Interface) -> Iterator[str]:
         yield "needsExecutionTool is true: some tools refuse such FMUs"
 
 
+# the standard does not ask for units
 @DESCRIPTION_RULES.rule("units", Severity.NOTE, "variables have units", Clause("2.2.2", "2.4.3"))
 def units(interface: Interface) -> Iterator[str]:
     """Public variables without unit."""
