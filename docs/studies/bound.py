@@ -201,7 +201,7 @@ def _metrics(of: Metrics) -> tuple[Cell, ...]:
 def controller_rows(tasks: Iterable[Task]) -> dict[str, Table]:
     """What the controller does, in both tables."""
     named = {f"{task.manoeuvre.name}, controller": task for task in tasks}
-    of_contacts = {name: (1.0, None, _times(each.contacts), None, None) for name, each in named.items()}
+    of_contacts = {name: (1.0, None, _times(task.contacts), None, None) for name, task in named.items()}
     return {
         "optima": Table("manoeuvre, torque", OPTIMA, of_contacts),
         "metrics": Table("manoeuvre, torque", METRICS, {name: _metrics(task.reached) for name, task in named.items()}),

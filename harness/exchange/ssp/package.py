@@ -11,7 +11,7 @@ from toolground.errors import UserError
 from ...manoeuvres.manoeuvre import Manoeuvre
 from . import mastersim, variables
 from .structure import structure
-from .variables import Value, conversion, typed, units, values
+from .variables import Value, conversion, typed_element, units, values
 from .xml import Element, document, element
 
 
@@ -97,5 +97,5 @@ def parameter_set(fitted: Fit, tool: str, values: Mapping[str, Sequence[Value]])
 
 def _parameter(prefix: str, value: Value) -> Element:
     described = {"description": value.description} if value.description else {}
-    content = typed("ssv", value.type, value.fmi, value.unit, value.value)
+    content = typed_element("ssv", value.type, value.fmi, value.unit, value.value)
     return element("ssv:Parameter", {"name": f"{prefix}{value.name}", **described}, [content])

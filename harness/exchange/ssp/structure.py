@@ -18,7 +18,7 @@ from fmuloop.wiring import Fit
 
 from ...loop.places import STEP_SIZE
 from . import layout
-from .variables import as_it_is, conversion, outputs, their_name, typed, units, version
+from .variables import as_it_is, conversion, outputs, their_name, typed_element, units, version
 from .xml import Element, document, element
 
 OSP, OMS = "com.opensimulationplatform", "org.openmodelica"
@@ -88,7 +88,7 @@ def _connector(theirs: str, name: str, variable: ModelVariable, fmi: int) -> Ele
     connector = element(
         "ssd:Connector",
         {"name": theirs, "kind": variable.causality, "description": variable.description or name},
-        [typed("ssc", str(variable.type), fmi, unit_of(variable))],
+        [typed_element("ssc", str(variable.type), fmi, unit_of(variable))],
     )
     if name in layout.PLACES:
         connector.append(element("ssd:ConnectorGeometry", layout.PLACES[name]._asdict()))

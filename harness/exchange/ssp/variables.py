@@ -82,7 +82,7 @@ OF_FMI3 = {"Real": "Float64", "Integer": "Int32"}
 """What SSP 2.0 calls the types of FMUs of FMI 3.0."""
 
 
-def typed(prefix: str, kind: str, fmi: int, unit: str | None, value: object = None) -> Element:
+def typed_element(prefix: str, kind: str, fmi: int, unit: str | None, value: object = None) -> Element:
     """The element of a type, such as `ssc:Real`, with its unit and with a value if there is one."""
     attributes = {} if value is None else {"value": value}
     name = OF_FMI3.get(kind, kind) if fmi == 3 else kind

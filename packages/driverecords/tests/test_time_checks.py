@@ -28,9 +28,9 @@ def with_one_longer_step(steps: float, interval: float = 0.1) -> np.ndarray:
 def test_the_longest_step_that_is_no_gap(gap: float) -> None:
     path = Path("measured.csv")
     assert time_breaks(path, with_one_longer_step(gap * (1.0 - JUST)), "line {}".format, gap) == []
-    (found,) = time_breaks(path, with_one_longer_step(gap * (1.0 + JUST)), "line {}".format, gap)
-    assert re.search(rf"line 10: gap of .* s after 0\.9 s; .*\({gap:g} times the median step", found.problem)
-    assert (found.end, found.begin) == pytest.approx((0.9, 0.9 + 0.1 * gap), rel=1e-5)
+    (gap_found,) = time_breaks(path, with_one_longer_step(gap * (1.0 + JUST)), "line {}".format, gap)
+    assert re.search(rf"line 10: gap of .* s after 0\.9 s; .*\({gap:g} times the median step", gap_found.problem)
+    assert (gap_found.end, gap_found.begin) == pytest.approx((0.9, 0.9 + 0.1 * gap), rel=1e-5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ def test_messages_may_stay_away_for_longer_unless_they_share_the_time_of_a_senso
 def test_clean_pieces_are_those_between_the_breaks(
     breaks: list[tuple[float, float]], pieces: list[tuple[float, float]]
 ) -> None:
-    assert clean_pieces(0.0, 10.0, [Break(*each, "") for each in breaks]) == pieces
+    assert clean_pieces(0.0, 10.0, [Break(*times, "") for times in breaks]) == pieces
 
 
 @pytest.mark.parametrize("resolution", [0.2, 0.25, 0.5])

@@ -67,12 +67,12 @@ def _differences(a: Any, b: Any) -> Iterator[str]:
     for name in sorted(signals[0].keys() ^ signals[1].keys()):
         yield f"signal {plain(name, 60)}, which only one has"
     for name in sorted(signals[0].keys() & signals[1].keys()):
-        one, other = (by_name[name] for by_name in signals)
+        first, second = (by_name[name] for by_name in signals)
         for what in COMPARED:
-            left, right = getattr(one, what), getattr(other, what)
+            left, right = getattr(first, what), getattr(second, what)
             if left != right:
                 yield f"{what.replace('_', ' ')} of {plain(name, 60)} ({plain(left, 60)} and {plain(right, 60)})"
-        if _texts(one) != _texts(other):
+        if _texts(first) != _texts(second):
             yield f"the named values of {plain(name, 60)}"
 
 

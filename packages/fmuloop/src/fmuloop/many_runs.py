@@ -190,8 +190,8 @@ def _on_executor(
 
 def batched(cases: Iterable[Case], size: int) -> Iterator[list[Case]]:
     """So many at a time, the last ones fewer; what comes later is not asked for yet."""
-    left = iter(cases)
-    while batch := list(islice(left, size)):
+    remaining = iter(cases)
+    while batch := list(islice(remaining, size)):
         yield batch
 
 

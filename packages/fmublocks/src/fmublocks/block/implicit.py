@@ -44,22 +44,22 @@ class Implicit:
         Raises:
             NotIntegrable: the steps become too short or too many.
         """
-        left = length = duration
+        remaining = length = duration
         dx = self._derivative(x, u, p)
         jacobian = self._jacobian(x, dx, u, p)
         for _ in range(MOST_STEPS):
             work.steps += IMPLICIT_WORK
             end, error = self._step(x, dx, jacobian, u, p, length)
             if error <= 1.0:
-                left -= length
+                remaining -= length
                 x = end
-                if left <= 0.0:
+                if remaining <= 0.0:
                     return x
                 dx = self._derivative(x, u, p)
                 jacobian = self._jacobian(x, dx, u, p)
             elif length < SHORTEST_STEP:
                 break
-            length = min(left, length * change(error, 2))
+            length = min(remaining, length * change(error, 2))
         raise NotIntegrable(self.fastest(x, dx))
 
     def _jacobian(self, x: Record, dx: Record, u: object, p: object) -> Matrix:
