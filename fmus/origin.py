@@ -15,5 +15,5 @@ def sources_digest() -> str:
 
 def is_stale(path: Path) -> bool:
     """Whether an FMU of the project was not made from the sources that are there."""
-    found = origin.origin_of(path)
-    return found is None or found.sources != sources_digest()
+    record = origin.origin_of(path)
+    return record is None or record.sources != sources_digest()

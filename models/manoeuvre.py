@@ -61,7 +61,7 @@ _SIGNALS = {"T_driver": _PLANT["T_mot"], "T_brake": _PLANT["T_brake"], "slope": 
 def _point(k: int) -> dict[str, tuple[Any, float]]:
     """Declarations and start values of the parameters of a point."""
     time = Annotated[float, Real("s", f"instant of point {k}", 0.0, NEVER)]
-    signals = {name: replace(one, description=f"{name} at point {k}") for name, one in _SIGNALS.items()}
+    signals = {name: replace(declaration, description=f"{name} at point {k}") for name, declaration in _SIGNALS.items()}
     return {f"time_{k}": (time, NEVER)} | {f"{name}_{k}": (Annotated[float, q], 0.0) for name, q in signals.items()}
 
 

@@ -151,17 +151,17 @@ def call(x: State, now: float, p: Parameters) -> State:
 def deliver(x: State, now: float) -> State:
     """What has arrived by now is taken off the bus, and the newest of it is kept."""
     omega, valid, counter, following = x.omega_2_can, x.valid, x.counter, NEVER
-    left: list[Message] = []
+    waiting: list[Message] = []
     for message in reversed(x.under_way):
         arrived = message.arrival <= now
         omega = where(arrived, message.speed, omega)
         valid = where(arrived, message.valid, valid)
         counter = where(arrived, counter + 1, counter)
-        left.append(message._replace(arrival=where(arrived, NEVER, message.arrival)))
-        following = minimum(following, left[-1].arrival)
+        waiting.append(message._replace(arrival=where(arrived, NEVER, message.arrival)))
+        following = minimum(following, waiting[-1].arrival)
     return x._replace(
         next_arrival=following,
-        under_way=tuple(reversed(left)),
+        under_way=tuple(reversed(waiting)),
         omega_2_can=omega,
         valid=valid,
         counter=counter,

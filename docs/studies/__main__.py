@@ -79,17 +79,17 @@ def make(names: Sequence[str]) -> int:
     """Measures studies, one after the other; returns 1 if one could not be measured, else 0."""
     code = 0
     for k, name in enumerate(names, 1):
-        one = study(name)
-        print(f"[{k}/{len(names)}] {name}: {one.purpose}, about {one.seconds:g} s", flush=True)
+        entry = study(name)
+        print(f"[{k}/{len(names)}] {name}: {entry.purpose}, about {entry.seconds:g} s", flush=True)
         begin = _cpu_seconds()
         try:
-            measured = one.measure()
+            measured = entry.measure()
         except (UserError, BuildError) as failure:
             print(f"[{k}/{len(names)}] {name}: not measured: {failure}", flush=True)
             code = 1
             continue
         was = data_file.read(name).measured.tables if data_file.file_of(name).is_file() else {}
-        data_file.write(name, measured, one.seeds, _cpu_seconds() - begin)
+        data_file.write(name, measured, entry.seeds, _cpu_seconds() - begin)
         moved = [*differences(was, data_file.read(name).measured.tables)] if was else []
         print("\n".join([f"[{k}/{len(names)}] {name}: {told(moved)}", *map(str, moved)]), flush=True)
     return code
@@ -117,10 +117,10 @@ def sentinel_differences(name: str) -> list[Difference]:
     Raises:
         LookupError: a sentinel is not in its table.
     """
-    one = study(name)
+    entry = study(name)
     with patch.dict(os.environ, LOKY_MAX_CPU_COUNT="1"):
-        now = one.again() if one.again else {}
-    for table, rows in one.sentinels.items():
+        now = entry.again() if entry.again else {}
+    for table, rows in entry.sentinels.items():
         if lacking := set(rows) - now[table].rows.keys():
             raise LookupError(f"{name}, {table}: no row {', '.join(sorted(lacking))}")
     return list(differences(data_file.read(name).measured.tables, now))

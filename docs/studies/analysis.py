@@ -43,8 +43,8 @@ def _columns(record: type) -> tuple[Column, ...]:
         for metric, column in shown
     ]
     units = ("" if column.unit == "1" else column.unit for _, column in shown)
-    each = zip(names, units, shown, strict=True)
-    return tuple(Column(name, unit, column.decimals) for name, unit, (_, column) in each)
+    rows = zip(names, units, shown, strict=True)
+    return tuple(Column(name, unit, column.decimals) for name, unit, (_, column) in rows)
 
 
 def _cells(record: object) -> tuple[Cell, ...]:
@@ -62,9 +62,9 @@ def _mode(mode: tuple[float, float]) -> tuple[Cell, ...]:
     return (None, None) if isnan(mode[0]) else tuple(mode)
 
 
-def margins_table(found: Iterable[At]) -> Table:
+def margins_table(points: Iterable[At]) -> Table:
     """The margins at some speeds."""
-    rows = {f"{at.plant}, {at.speed:g} km/h": (*_mode(at.mode), *_cells(at.margins)) for at in found}
+    rows = {f"{at.plant}, {at.speed:g} km/h": (*_mode(at.mode), *_cells(at.margins)) for at in points}
     return Table("plant, speed", (*MODE, *_columns(Margins)), rows)
 
 
@@ -75,21 +75,21 @@ def _swept_name(plant: str, sweep: Sweep, value: float) -> str:
     return f"{plant}, {sweep.name}, {value:.3g} {sweep.unit}"
 
 
-def _swept_cells(found: Swept) -> tuple[Cell, ...]:
-    margins = found.margins
+def _swept_cells(swept: Swept) -> tuple[Cell, ...]:
+    margins = swept.margins
     if margins is None:
-        return *_mode(found.mode), *("unstable",) * 3
-    return *_mode(found.mode), _any(margins.gain_margin), _any(margins.delay_margin, 1e3), margins.M_s
+        return *_mode(swept.mode), *("unstable",) * 3
+    return *_mode(swept.mode), _any(margins.gain_margin), _any(margins.delay_margin, 1e3), margins.M_s
 
 
-def poles_table(found: Mapping[str, Mapping[str, list[Swept]]]) -> Table:
+def poles_table(sweeps_of: Mapping[str, Mapping[str, list[Swept]]]) -> Table:
     """The least, the middle and the largest value of each sweep."""
     rows = {
-        _swept_name(plant, sweep, each.value): _swept_cells(each)
-        for plant, sweeps in found.items()
+        _swept_name(plant, sweep, swept.value): _swept_cells(swept)
+        for plant, sweeps in sweeps_of.items()
         for sweep in SWEEPS
         for values in [sweeps[sweep.name]]
-        for each in (values[0], values[len(values) // 2], values[-1])
+        for swept in (values[0], values[len(values) // 2], values[-1])
     }
     return Table("plant, what is another one in the car, value", SWEPT, rows)
 
@@ -101,14 +101,14 @@ def _swing_name(plant: str, amplitude: float) -> str:
     return f"{plant}, {f'{amplitude:.3g} phi_B' if isfinite(amplitude) else 'in contact'}"
 
 
-def backlash_table(found: Mapping[str, Iterable[Swing]]) -> Table:
+def backlash_table(swings_of: Mapping[str, Iterable[Swing]]) -> Table:
     """The margins while the teeth swing."""
     rows: dict[str, tuple[Cell, ...]] = {}
-    for plant, swings in found.items():
-        for each in swings:
-            margins = (_any(each.margins.gain_margin), _any(each.margins.delay_margin, 1e3)) if each.margins else ()
-            row = (each.N, "yes" if each.stable else "no", *(margins or (None, None)))
-            rows[_swing_name(plant, each.amplitude)] = row
+    for plant, swings in swings_of.items():
+        for swing in swings:
+            margins = (_any(swing.margins.gain_margin), _any(swing.margins.delay_margin, 1e3)) if swing.margins else ()
+            row = (swing.N, "yes" if swing.stable else "no", *(margins or (None, None)))
+            rows[_swing_name(plant, swing.amplitude)] = row
     return Table("plant, amplitude", SWINGS, rows)
 
 
@@ -120,19 +120,19 @@ CYCLES = (
 )
 
 
-def cycles_table(found: Mapping[str, Iterable[LimitCycle]]) -> Table:
+def cycles_table(cycles_of: Mapping[str, Iterable[LimitCycle]]) -> Table:
     """The swings that neither grow nor die away; from those that do not last larger ones grow."""
     rows = {
-        f"{plant}, {k}": (each.amplitude, each.frequency, each.N, "yes" if each.lasting else "no")
-        for plant, cycles in found.items()
-        for k, each in enumerate(cycles, 1)
+        f"{plant}, {k}": (cycle.amplitude, cycle.frequency, cycle.N, "yes" if cycle.lasting else "no")
+        for plant, cycles in cycles_of.items()
+        for k, cycle in enumerate(cycles, 1)
     }
     return Table("plant, limit cycle", CYCLES, rows)
 
 
-def estimates_table(found: Mapping[tuple[str, str], EstimateMetrics]) -> Table:
+def estimates_table(metrics_of: Mapping[tuple[str, str], EstimateMetrics]) -> Table:
     """The error of the estimate in runs with all noise."""
-    rows = {f"{plant}, {manoeuvre}": _cells(metrics) for (plant, manoeuvre), metrics in found.items()}
+    rows = {f"{plant}, {manoeuvre}": _cells(metrics) for (plant, manoeuvre), metrics in metrics_of.items()}
     return Table("plant, manoeuvre", _columns(EstimateMetrics), rows)
 
 
@@ -140,33 +140,33 @@ MOST = 12
 """Parameters that the table of sensitivities has."""
 
 
-def sensitivities_table(found: Iterable[Sensitivity]) -> Table:
+def sensitivities_table(sensitivities: Iterable[Sensitivity]) -> Table:
     """By how many % a metric changes for 1 % of a parameter."""
     headings = [m.column.plain_heading for m in declared(Metrics) if m.name in SHOWN and m.column]
     rows = {
-        f"{each.parameter}, {each.plant}, {each.manoeuvre}": tuple(map(cell, each.changes.values())) for each in found
+        f"{of.parameter}, {of.plant}, {of.manoeuvre}": tuple(map(cell, of.changes.values())) for of in sensitivities
     }
     return Table("parameter, plant, manoeuvre", tuple(Column(name, "", 2, 0.05) for name in headings), rows)
 
 
 def measure() -> Measured:
-    found = analyse({plant: Settings(plant) for plant in PLANTS})
-    important = most_important(found.sensitivities, MOST)
-    ordered = [each for name in important for each in found.sensitivities if each.parameter == name]
-    loops = {at.plant: (at.loop, at.margins) for at in found.at if at.speed == SPEEDS[1]}
+    analysis = analyse({plant: Settings(plant) for plant in PLANTS})
+    important = most_important(analysis.sensitivities, MOST)
+    ordered = [of for name in important for of in analysis.sensitivities if of.parameter == name]
+    loops = {at.plant: (at.loop, at.margins) for at in analysis.at if at.speed == SPEEDS[1]}
     name = f"{OURS} at {SPEEDS[1]:g} km/h"
     return Measured(
         {
-            "margins": margins_table(found.at),
-            "poles": poles_table(found.swept),
-            "backlash": backlash_table(found.swings),
-            "limit_cycles": cycles_table(found.limit_cycles),
-            "estimates": estimates_table(found.estimates),
+            "margins": margins_table(analysis.at),
+            "poles": poles_table(analysis.swept),
+            "backlash": backlash_table(analysis.swings),
+            "limit_cycles": cycles_table(analysis.limit_cycles),
+            "estimates": estimates_table(analysis.estimates),
             "sensitivities": sensitivities_table(ordered),
         },
         {
             "bode": bode(loops, f"{name}: loop gain"),
-            "backlash": backlash(found.swings, f"{name}: swinging through the gap"),
+            "backlash": backlash(analysis.swings, f"{name}: swinging through the gap"),
         },
     )
 

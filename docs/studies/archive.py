@@ -56,30 +56,30 @@ OPTIONS = {
 
 def archive(folder: Path, platform: str = "all") -> Path:
     """Makes the archive in a folder, with FMUs for `all` platforms or that of the `host`."""
-    with TemporaryDirectory() as made:
-        content = _content(Path(made), platform)
+    with TemporaryDirectory() as temporary:
+        content = _content(Path(temporary), platform)
     target = folder / f"{NAME}.zip"
     write_archive({f"{NAME}/{path}": file for path, file in content.items()}, target)
     return target
 
 
-def _content(made: Path, platform: str) -> dict[str, bytes]:
+def _content(folder: Path, platform: str) -> dict[str, bytes]:
     for fmi, names in ((2, [*FMUS, MANOEUVRE]), (3, list(FMUS))):
-        list(build_fmus(names, made, "native", platform, fmi=fmi))
-    if driveline(["ssp", "--fmus", str(made), "--build", "native", "--output", str(made), "--quiet"]):
+        list(build_fmus(names, folder, "native", platform, fmi=fmi))
+    if driveline(["ssp", "--fmus", str(folder), "--build", "native", "--output", str(folder), "--quiet"]):
         raise UserError("driveline ssp failed")
-    files = {"ssp/driveline.ssp": made / "driveline.ssp", "LICENSE.txt": ROOT / "LICENSE"}
-    files |= {f"{into}/{name}.fmu": made / build / f"{name}.fmu" for into, build in FOLDERS.items() for name in FMUS}
+    files = {"ssp/driveline.ssp": folder / "driveline.ssp", "LICENSE.txt": ROOT / "LICENSE"}
+    files |= {f"{into}/{name}.fmu": folder / build / f"{name}.fmu" for into, build in FOLDERS.items() for name in FMUS}
     content = {path: file.read_bytes() for path, file in files.items()}
     for name in FMUS:
-        content |= {f"reference/{name}/{file}": text.encode() for file, text in _reference(name, made).items()}
+        content |= {f"reference/{name}/{file}": text.encode() for file, text in _reference(name, folder).items()}
     page = PAGE.read_text(encoding="utf-8").replace("VERSION", VERSION).replace("FMPY", fmpy.__version__)
     return content | {"README.md": page.encode()}
 
 
-def _reference(name: str, made: Path) -> dict[str, str]:
-    inputs = _inputs(name, made)
-    interface = Interface(made / NATIVE_FOLDER / f"{name}.fmu")
+def _reference(name: str, folder: Path) -> dict[str, str]:
+    inputs = _inputs(name, folder)
+    interface = Interface(folder / NATIVE_FOLDER / f"{name}.fmu")
     outputs = [variable.name for variable in interface.of_causality("output")]
     both = [
         fmpy.simulate_fmu(
@@ -90,7 +90,7 @@ def _reference(name: str, made: Path) -> dict[str, str]:
             input=_completed(inputs, Interface(path)),
             output=outputs,
         )
-        for path in (made / build / f"{name}.fmu" for build in FOLDERS.values())
+        for path in (folder / build / f"{name}.fmu" for build in FOLDERS.values())
     ]
     if any(not np.array_equal(both[0][column], both[1][column]) for column in ("time", *outputs)):
         raise UserError(f"{name}: its FMUs of FMI 2.0 and FMI 3.0 give different results")
@@ -98,15 +98,15 @@ def _reference(name: str, made: Path) -> dict[str, str]:
     return {f"{name}_in.csv": _csv(inputs), f"{name}_ref.csv": _csv(both[0]), f"{name}_ref.opt": options}
 
 
-def _inputs(name: str, made: Path) -> np.ndarray:
+def _inputs(name: str, folder: Path) -> np.ndarray:
     """What the loop gives an FMU in a launch: a structured array with `time` and its inputs."""
     (place,) = (place for place, names in PLACES.items() if name in names)
     plant = name if name in PLANTS else PLANTS[0]
-    run = simulate(MANOEUVRES["launch"], plant, scheme=Scheme.JACOBI, folder=made, build="native")
+    run = simulate(MANOEUVRES["launch"], plant, scheme=Scheme.JACOBI, folder=folder, build="native")
     sources = {c.target: c.source for c in CONNECTIONS}
     columns = {
         variable.name: run[sources.get(full, full)]
-        for variable in Interface(made / NATIVE_FOLDER / f"{name}.fmu").of_causality("input")
+        for variable in Interface(folder / NATIVE_FOLDER / f"{name}.fmu").of_causality("input")
         if (full := f"{place}.{variable.name}") in sources or full in (run.dtype.names or ())
     }
     return _table(run, columns)
@@ -114,8 +114,8 @@ def _inputs(name: str, made: Path) -> np.ndarray:
 
 def _completed(inputs: np.ndarray, interface: Interface) -> np.ndarray:
     """With the other inputs, which keep their start values; FMPy warns of an input that it is not given."""
-    given = inputs.dtype.names or ()
-    starts = {v.name: v.start or "0" for v in interface.of_causality("input") if v.name not in given}
+    names = inputs.dtype.names or ()
+    starts = {v.name: v.start or "0" for v in interface.of_causality("input") if v.name not in names}
     others = {name: float({"false": "0", "true": "1"}.get(start, start)) for name, start in starts.items()}
     completed = np.empty(len(inputs), [*inputs.dtype.descr, *((name, np.float64) for name in others)])
     for name in completed.dtype.names or ():
@@ -127,11 +127,11 @@ def _table(run: Results, columns: dict[str, np.ndarray]) -> np.ndarray:
     rows = round(STOP_TIME / STEP_SIZE) + 1
     types = {"f": np.float64, "i": np.int32, "b": np.bool_}
     table = np.zeros(
-        rows, [("time", np.float64), *((each, types[column.dtype.kind]) for each, column in columns.items())]
+        rows, [("time", np.float64), *((name, types[column.dtype.kind]) for name, column in columns.items())]
     )
     table["time"] = run["time"][:rows]
-    for each, column in columns.items():
-        table[each] = column[:rows]
+    for name, column in columns.items():
+        table[name] = column[:rows]
     return table
 
 
@@ -153,8 +153,8 @@ def _number(value: np.generic) -> str:
 def main() -> None:
     if len(sys.argv) != 2:
         sys.exit("which folder? such as python -m docs.studies.archive dist")
-    made = archive(Path(sys.argv[1]))
-    print(f"{made}: {made.stat().st_size / 1e6:.1f} MB")
+    path = archive(Path(sys.argv[1]))
+    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
 
 
 if __name__ == "__main__":

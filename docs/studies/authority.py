@@ -106,9 +106,9 @@ def measured(trial: Trial) -> tuple[float, float]:
     """Settling time in ms and overshoot in %, each the mean over the seeds."""
     car = CARS[trial.car].entries()
     gains: Mapping[str, float] = design(car) if trial.own else {}
-    course, given = manoeuvre(trial.step, car["T_max"]), loop_parameters({**car, **gains}, trial.plant)
-    found = [evaluate(simulate(course, trial.plant, parameters=given, seed=seed), course) for seed in SEEDS]
-    settling, overshoot = np.mean([(1e3 * each.settling_time, 1e2 * each.overshoot) for each in found], axis=0)
+    course, parameters = manoeuvre(trial.step, car["T_max"]), loop_parameters({**car, **gains}, trial.plant)
+    metrics = [evaluate(simulate(course, trial.plant, parameters=parameters, seed=seed), course) for seed in SEEDS]
+    settling, overshoot = np.mean([(1e3 * of.settling_time, 1e2 * of.overshoot) for of in metrics], axis=0)
     return float(settling), float(overshoot)
 
 
@@ -125,12 +125,12 @@ def tables(cars: Iterable[str], plants: Iterable[str] = PLANTS) -> dict[str, Tab
     """The limits of cars, and what their steps are with the default gains and limits, and with their own."""
     named, driven = list(cars), list(plants)
     gains = {car: design(CARS[car].entries()) for car in named}
-    trials = [Trial(*each) for each in product(named, driven, STEPS, (False, True))]
-    found = dict(zip(trials, run_many(measured, trials, label="cars"), strict=True))
+    trials = [Trial(*combination) for combination in product(named, driven, STEPS, (False, True))]
+    measures = dict(zip(trials, run_many(measured, trials, label="cars"), strict=True))
     rows: dict[str, tuple[Cell, ...]] = {}
     for default in trials[::2]:
-        pair = [found[default], found[default._replace(own=True)]]
-        rows[f"{default.car}, {default.plant}, {default.step}"] = tuple(each[k] for k in (1, 0) for each in pair)
+        pair = [measures[default], measures[default._replace(own=True)]]
+        rows[f"{default.car}, {default.plant}, {default.step}"] = tuple(values[k] for k in (1, 0) for values in pair)
     limits = {car: (gains[car]["T_take_max"], gains[car]["T_add_max"]) for car in named}
     return {"limits": Table("car", LIMITS, limits), "steps": Table("car, plant, step", COLUMNS, rows)}
 

@@ -123,9 +123,9 @@ def quiet_run(name: str, settings: Settings) -> Quiet:
     quiet = settings.with_parameters({f"motor.{n}": v for n, v in NOISELESS.items()})
     blocks = fit(loop(quiet)).parameters({**start(manoeuvre), **quiet.parameters})
     limits = {name: value for name, value in blocks["controller"].items() if name in Parameters._fields}
-    given = task(manoeuvre, simulate(manoeuvre, quiet), Parameters(**limits))
+    quiet_task = task(manoeuvre, simulate(manoeuvre, quiet), Parameters(**limits))
     of_car = {f"{place}.{name}": value for place in ("plant", "motor") for name, value in blocks[place].items()}
-    return Quiet(quiet, given, of_car)
+    return Quiet(quiet, quiet_task, of_car)
 
 
 def bounded(name: str, settings: Settings) -> Bounded:
@@ -138,23 +138,23 @@ def bounded(name: str, settings: Settings) -> Bounded:
     Raises:
         SimulationError: the run of the controller lacks a metric.
     """
-    quiet, given, of_car = quiet_run(name, settings)
-    search = Search(given, linear_car(given.results, of_car, given.first), given.metrics)
-    contacts = search.descend(given.contacts)
+    quiet, task, of_car = quiet_run(name, settings)
+    search = Search(task, linear_car(task.results, of_car, task.first), task.metrics)
+    contacts = search.descend(task.contacts)
     first = _verified(search, contacts, search.solve(contacts), quiet)
 
-    car = linear_car(first.results, of_car, given.first)
-    search = Search(given, car, given.metrics)
-    found = search.surround(contacts)
-    best = min(found, key=lambda each: each.solution.ratio)
+    car = linear_car(first.results, of_car, task.first)
+    search = Search(task, car, task.metrics)
+    surroundings = search.surround(contacts)
+    best = min(surroundings, key=lambda neighbour: neighbour.solution.ratio)
     jointly = _verified(search, best.contacts, best.solution, quiet)
 
     alone = {}
-    for metric in (name for name in ALONE if name in given.metrics):
-        search = Search(given, car, (metric,))
+    for metric in (name for name in ALONE if name in task.metrics):
+        search = Search(task, car, (metric,))
         contacts = search.descend(best.contacts)
         alone[metric] = _verified(search, contacts, search.solve(contacts, FINE), quiet)
-    return Bounded(given, jointly, min(each.solution.bound for each in found), len(found), alone)
+    return Bounded(task, jointly, min(neighbour.solution.bound for neighbour in surroundings), len(surroundings), alone)
 
 
 def all_bounded(names: Sequence[str], settings: Settings) -> list[Bounded]:
@@ -163,11 +163,11 @@ def all_bounded(names: Sequence[str], settings: Settings) -> list[Bounded]:
 
 
 def _verified(search: Search, contacts: Contacts, solution: Solution, settings: Settings) -> Optimum:
-    given = search.task
-    results = open_loop_run(given.manoeuvre, given.reference(solution.u), settings)
-    expected = value(search.predictor.predict(contacts).T_gear(np.arange(len(given.times))), solution.u)
-    deviation = np.abs(expected - at_samples(results)["plant.T_gear"][given.first :]).max()
-    return Optimum(contacts, solution, results, evaluate(results, given.manoeuvre), float(deviation))
+    task = search.task
+    results = open_loop_run(task.manoeuvre, task.reference(solution.u), settings)
+    expected = value(search.predictor.predict(contacts).T_gear(np.arange(len(task.times))), solution.u)
+    deviation = np.abs(expected - at_samples(results)["plant.T_gear"][task.first :]).max()
+    return Optimum(contacts, solution, results, evaluate(results, task.manoeuvre), float(deviation))
 
 
 COLUMNS = {metric.name: metric.column for metric in declared(Metrics) if metric.column} | {
@@ -200,45 +200,47 @@ def _metrics(of: Metrics) -> tuple[Cell, ...]:
 
 def controller_rows(tasks: Iterable[Task]) -> dict[str, Table]:
     """What the controller does, in both tables."""
-    named = {f"{each.manoeuvre.name}, controller": each for each in tasks}
-    of_contacts = {name: (1.0, None, _times(each.contacts), None, None) for name, each in named.items()}
+    named = {f"{task.manoeuvre.name}, controller": task for task in tasks}
+    of_contacts = {name: (1.0, None, _times(task.contacts), None, None) for name, task in named.items()}
     return {
         "optima": Table("manoeuvre, torque", OPTIMA, of_contacts),
-        "metrics": Table("manoeuvre, torque", METRICS, {name: _metrics(each.reached) for name, each in named.items()}),
+        "metrics": Table("manoeuvre, torque", METRICS, {name: _metrics(task.reached) for name, task in named.items()}),
     }
 
 
-def tables(found: Sequence[Bounded]) -> dict[str, Table]:
+def tables(results: Sequence[Bounded]) -> dict[str, Table]:
     """What is possible in each manoeuvre, beside what the controller reaches."""
-    made = controller_rows(each.task for each in found)
-    optima, metrics = (dict(made[name].rows) for name in ("optima", "metrics"))
-    for each in found:
-        name, best = each.task.manoeuvre.name, each.jointly
-        ratios = (1.0 / each.ratio(best), 1.0 / each.bound)
-        optima[f"{name}, optimum"] = (*ratios, _times(best.contacts), each.neighbours, best.deviation)
+    reached = controller_rows(result.task for result in results)
+    optima, metrics = (dict(reached[name].rows) for name in ("optima", "metrics"))
+    for result in results:
+        name, best = result.task.manoeuvre.name, result.jointly
+        ratios = (1.0 / result.ratio(best), 1.0 / result.bound)
+        optima[f"{name}, optimum"] = (*ratios, _times(best.contacts), result.neighbours, best.deviation)
         metrics[f"{name}, jointly"] = _metrics(best.metrics)
-        for metric, optimum in each.alone.items():
+        for metric, optimum in result.alone.items():
             metrics[f"{name}, {COLUMNS[metric].plain_heading} alone"] = _metrics(optimum.metrics)
     rows = {"optima": optima, "metrics": metrics}
-    names = [each.task.manoeuvre.name for each in found]
+    names = [result.task.manoeuvre.name for result in results]
 
     def in_order(row: str) -> int:
         return names.index(row.partition(",")[0])
 
-    return {of: made[of]._replace(rows={row: rows[of][row] for row in sorted(rows[of], key=in_order)}) for of in rows}
+    return {
+        of: reached[of]._replace(rows={row: rows[of][row] for row in sorted(rows[of], key=in_order)}) for of in rows
+    }
 
 
-def drawing(found: Sequence[Bounded], controller: str) -> Drawing:
+def drawing(results: Sequence[Bounded], controller: str) -> Drawing:
     """The torques, a column for each manoeuvre."""
-    rows = list(zip(*(_panels(each, controller) for each in found), strict=True))
+    rows = list(zip(*(_panels(result, controller) for result in results), strict=True))
     title = f"{controller} and the best that is possible, design model"
-    size = 2.2 * len(found) + 1.2, 1.9
-    return Drawing(rows, AFTER, title, size=size, key=min(5, 2 * len(found)), same_y=False)
+    size = 2.2 * len(results) + 1.2, 1.9
+    return Drawing(rows, AFTER, title, size=size, key=min(5, 2 * len(results)), same_y=False)
 
 
-def _panels(found: Bounded, controller: str) -> list[Panel]:
-    task, t_0 = found.task, found.task.manoeuvre.t_0
-    runs = ((task.results, controller, BLUE), (found.jointly.results, "best possible", VERMILION))
+def _panels(result: Bounded, controller: str) -> list[Panel]:
+    task, t_0 = result.task, result.task.manoeuvre.t_0
+    runs = ((task.results, controller, BLUE), (result.jointly.results, "best possible", VERMILION))
     t = at_samples(task.results, T_S)["time"]
     demand = Curve(1e3 * (t - t_0), np.asarray(task.manoeuvre.T_driver(t), float), "demand", BLACK, DASHED, 0.8, True)
     limited = 1e3 * (task.times[: len(task.lower)] - t_0)
@@ -248,14 +250,14 @@ def _panels(found: Bounded, controller: str) -> list[Panel]:
         sampled = ((at_samples(results, T_S), name, color) for results, name, color in runs)
         return [Curve(1e3 * (of["time"] - t_0), of[column], name, color, held=held) for of, name, color in sampled]
 
-    heading = f"{task.manoeuvre.name}\n{1.0 / found.ratio(found.jointly):.2f} times the optimum"
+    heading = f"{task.manoeuvre.name}\n{1.0 / result.ratio(result.jointly):.2f} times the optimum"
     return [
         Panel("torque reference\nin N·m", [*limits, *curves("controller.T_ref", True), demand], heading),
         Panel("gear torque\nin N·m", [*curves("plant.T_gear", False), demand]),
     ]
 
 
-def record(found: Bounded) -> dict[str, Any]:
+def record(result: Bounded) -> dict[str, Any]:
     """All that was found for a manoeuvre, in SI units."""
 
     def told(contacts: Contacts, metrics: Metrics) -> dict[str, Any]:
@@ -265,17 +267,17 @@ def record(found: Bounded) -> dict[str, Any]:
         return {**told(of.contacts, of.metrics), "deviation_N_m": of.deviation}
 
     return {
-        "manoeuvre": found.task.manoeuvre.name,
-        "controller": told(found.task.contacts, found.task.reached),
-        "jointly": {**optimum(found.jointly), "ratio": found.ratio(found.jointly), "bound": found.bound},
-        "neighbours": found.neighbours,
-        "alone": {name: optimum(each) for name, each in found.alone.items()},
+        "manoeuvre": result.task.manoeuvre.name,
+        "controller": told(result.task.contacts, result.task.reached),
+        "jointly": {**optimum(result.jointly), "ratio": result.ratio(result.jointly), "bound": result.bound},
+        "neighbours": result.neighbours,
+        "alone": {name: optimum(best) for name, best in result.alone.items()},
     }
 
 
 def measure() -> Measured:
-    found = all_bounded(BOUNDED_MANOEUVRES, Settings())
-    return Measured(tables(found), {"torques": drawing(found, OURS)})
+    results = all_bounded(BOUNDED_MANOEUVRES, Settings())
+    return Measured(tables(results), {"torques": drawing(results, OURS)})
 
 
 def again() -> dict[str, Table]:
@@ -294,15 +296,15 @@ def explore(arguments: Sequence[str]) -> None:
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draws the torques; without an ending")
     parser.add_argument("--json", action="store_true", help="all numbers, in SI units, instead of the tables")
     args = parser.parse_args(arguments)
-    given = loop_parameters(read_files(args.vehicle, args.parameters), PLANT, args.controller)
-    settings = built(PLANT, folder=args.fmus, controller=args.controller).replace(parameters=given)
-    found = all_bounded(list(dict.fromkeys(args.manoeuvre or BOUNDED_MANOEUVRES)), settings)
+    parameters = loop_parameters(read_files(args.vehicle, args.parameters), PLANT, args.controller)
+    settings = built(PLANT, folder=args.fmus, controller=args.controller).replace(parameters=parameters)
+    results = all_bounded(list(dict.fromkeys(args.manoeuvre or BOUNDED_MANOEUVRES)), settings)
     if args.figure:
-        draw(drawing(found, args.controller), args.figure)
+        draw(drawing(results, args.controller), args.figure)
     if args.json:
-        print(json.dumps([record(each) for each in found], indent=2))
+        print(json.dumps([record(result) for result in results], indent=2))
     else:
-        for name, table in tables(found).items():
+        for name, table in tables(results).items():
             show(name, table)
 
 

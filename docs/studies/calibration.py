@@ -145,40 +145,40 @@ class Found:
         """The metrics of a case, in the units of the tables."""
         return {name: column.factor * getattr(self.answers[case].metrics, name) for name, column in COLUMNS.items()}
 
-    def changes(self, plant: str, manoeuvre: str, given: Given) -> dict[str, float]:
+    def changes(self, plant: str, manoeuvre: str, parameters: Given) -> dict[str, float]:
         """By how much they change where parameters are set."""
-        usual, other = self.values(Case(plant, manoeuvre)), self.values(Case(plant, manoeuvre, given))
+        usual, other = self.values(Case(plant, manoeuvre)), self.values(Case(plant, manoeuvre, parameters))
         return {name: other[name] - usual[name] for name in COLUMNS}
 
     def matters(self, plant: str, manoeuvre: str, name: str) -> bool:
         """Whether a parameter of the law changes some metric by more than LEAST."""
         usual = self.values(Case(plant, manoeuvre))
-        each = [self.changes(plant, manoeuvre, given) for given in changed_law(name)]
-        return any(abs(found[metric]) > LEAST * abs(usual[metric]) for found in each for metric in COLUMNS)
+        effects = [self.changes(plant, manoeuvre, parameters) for parameters in changed_law(name)]
+        return any(abs(changes[metric]) > LEAST * abs(usual[metric]) for changes in effects for metric in COLUMNS)
 
 
 def _cells(values: Mapping[str, float]) -> tuple[Cell, ...]:
     return tuple(map(cell, values.values()))
 
 
-def nominal_table(found: Found, plant: str, manoeuvres: Iterable[str]) -> Table:
+def nominal_table(runs: Found, plant: str, manoeuvres: Iterable[str]) -> Table:
     """The default car."""
-    rows = {name: _cells(found.values(Case(plant, name))) for name in manoeuvres}
+    rows = {name: _cells(runs.values(Case(plant, name))) for name in manoeuvres}
     return Table(f"{plant}, manoeuvre", METRICS, rows)
 
 
-def changes_table(found: Found, plant: str, pairs: Iterable[tuple[str, str]]) -> Table:
+def changes_table(runs: Found, plant: str, pairs: Iterable[tuple[str, str]]) -> Table:
     """The parameters that matter, one at a time, by pairs of parameter and manoeuvre."""
     rows = {
-        f"{name} {way}, {manoeuvre}": _cells(found.changes(plant, manoeuvre, given))
+        f"{name} {way}, {manoeuvre}": _cells(runs.changes(plant, manoeuvre, parameters))
         for name, manoeuvre in pairs
-        if found.matters(plant, manoeuvre, name)
-        for way, given in zip(WAYS, changed_law(name), strict=True)
+        if runs.matters(plant, manoeuvre, name)
+        for way, parameters in zip(WAYS, changed_law(name), strict=True)
     }
     return Table(f"change on {plant}", CHANGES, rows)
 
 
-def remedies_table(found: Found, remedies: Iterable[Remedy]) -> Table:
+def remedies_table(runs: Found, remedies: Iterable[Remedy]) -> Table:
     """What each remedy does and costs."""
     columns = tuple(
         column
@@ -186,38 +186,38 @@ def remedies_table(found: Found, remedies: Iterable[Remedy]) -> Table:
         for column in (Column(what), *(Column(f"{what}, {plant}", "", 2, tolerance=0.1) for plant in PLANTS))
     )
 
-    def effected(effect: Effect, given: Given) -> tuple[Cell, ...]:
+    def effected(effect: Effect, parameters: Given) -> tuple[Cell, ...]:
         column = COLUMNS[effect.metric]
-        changes = (found.changes(plant, effect.manoeuvre, given)[effect.metric] for plant in PLANTS)
+        changes = (runs.changes(plant, effect.manoeuvre, parameters)[effect.metric] for plant in PLANTS)
         return f"{column.plain_heading}, {column.unit}, {effect.manoeuvre}", *map(cell, changes)
 
     rows = {}
     for remedy in remedies:
-        given = changed_law(remedy.parameter)[remedy.up]
+        parameters = changed_law(remedy.parameter)[remedy.up]
         row = f"{remedy.symptom}: {remedy.parameter} {WAYS[remedy.up]}"
-        rows[row] = (*effected(remedy.does, given), *effected(remedy.costs, given))
+        rows[row] = (*effected(remedy.does, parameters), *effected(remedy.costs, parameters))
     return Table("symptom: turn", columns, rows)
 
 
-def cars_table(found: Found, cars: Iterable[tuple[str, Deviation]]) -> Table:
+def cars_table(runs: Found, cars: Iterable[tuple[str, Deviation]]) -> Table:
     """Cars that the controller does not know, and knows, by pairs of plant and what is another one."""
     rows = {
         f"{plant}, {deviation_name(deviation)}, {manoeuvre}, {told}": _cells(
-            found.values(Case(plant, manoeuvre, given))
+            runs.values(Case(plant, manoeuvre, parameters))
         )
         for plant, deviation in cars
         for manoeuvre in CAR_DRIVEN
-        for told, given in zip(TOLD, another_car(plant, deviation), strict=True)
+        for told, parameters in zip(TOLD, another_car(plant, deviation), strict=True)
     }
     return Table("plant, car, manoeuvre", METRICS, rows)
 
 
-def rest_table(found: Found, noises: Iterable[float]) -> Table:
+def rest_table(runs: Found, noises: Iterable[float]) -> Table:
     """The torque that noise of the motor speed makes at standstill, rms."""
     cases = {f"{plant}, omega_still {still:g}": (plant, still) for plant, still in product(PLANTS, STILL)}
     rows = {
         f"{noise:g}": tuple(
-            found.answers[Case(plant, STANDSTILL.name, at_rest(noise, still))].metrics.added_torque_rms
+            runs.answers[Case(plant, STANDSTILL.name, at_rest(noise, still))].metrics.added_torque_rms
             for plant, still in cases.values()
         )
         for noise in noises
@@ -225,12 +225,12 @@ def rest_table(found: Found, noises: Iterable[float]) -> Table:
     return Table("noise, rad/s", tuple(Column(name, "N.m", 2, tolerance=0.1) for name in cases), rows)
 
 
-def fallback_table(found: Found, suspects: Iterable[Suspect]) -> Table:
+def fallback_table(runs: Found, suspects: Iterable[Suspect]) -> Table:
     """The share of a drive in fallback, where something is off that is no fault."""
     rows = {
         suspect.what: (
             suspect.helps,
-            *(1e2 * found.answers[Case(plant, "drive", suspect.given)].fallback for plant in PLANTS),
+            *(1e2 * runs.answers[Case(plant, "drive", suspect.parameters)].fallback for plant in PLANTS),
         )
         for suspect in suspects
     }
@@ -246,10 +246,10 @@ def cases(
 ) -> list[Case]:
     """Those of the tables."""
     usual = [Case(plant, manoeuvre) for plant in plants for _, manoeuvre in law]
-    changed = [Case(plant, manoeuvre, given) for plant in plants for p, manoeuvre in law for given in changed_law(p)]
-    others = [Case(plant, name, given) for plant, d in cars for given in another_car(plant, d) for name in CAR_DRIVEN]
-    off = [Case(plant, "drive", suspect.given) for plant in PLANTS for suspect in suspects]
-    still = [Case(plant, STANDSTILL.name, at_rest(*each)) for plant in PLANTS for each in product(noises, STILL)]
+    changed = [Case(plant, manoeuvre, told) for plant in plants for p, manoeuvre in law for told in changed_law(p)]
+    others = [Case(plant, name, told) for plant, d in cars for told in another_car(plant, d) for name in CAR_DRIVEN]
+    off = [Case(plant, "drive", suspect.parameters) for plant in PLANTS for suspect in suspects]
+    still = [Case(plant, STANDSTILL.name, at_rest(*pair)) for plant in PLANTS for pair in product(noises, STILL)]
     return [*usual, *changed, *others, *off, *still]
 
 
@@ -258,20 +258,20 @@ ALL_CARS = tuple(product(PLANTS, DEVIATIONS))
 
 
 def measure() -> Measured:
-    found = Found()
+    runs = Found()
     stiff = stiff_vehicle()
-    found.of([*cases(ALL_LAW, ALL_CARS, NOISES, SUSPECTS), stiff])
-    cars = cars_table(found, ALL_CARS)
+    runs.of([*cases(ALL_LAW, ALL_CARS, NOISES, SUSPECTS), stiff])
+    cars = cars_table(runs, ALL_CARS)
     more = f"{stiff.plant}, {deviation_name(STIFF)}, {stiff.manoeuvre}, told, k_d x {FACTOR:g}"
     tables = {
-        "remedies": remedies_table(found, REMEDIES),
-        "cars": cars._replace(rows={**cars.rows, more: _cells(found.values(stiff))}),
-        "rest": rest_table(found, NOISES),
-        "fallback": fallback_table(found, SUSPECTS),
+        "remedies": remedies_table(runs, REMEDIES),
+        "cars": cars._replace(rows={**cars.rows, more: _cells(runs.values(stiff))}),
+        "rest": rest_table(runs, NOISES),
+        "fallback": fallback_table(runs, SUSPECTS),
     }
     for plant in PLANTS:
-        tables[f"nominal_{plant}"] = nominal_table(found, plant, DRIVEN)
-        tables[f"changes_{plant}"] = changes_table(found, plant, ALL_LAW)
+        tables[f"nominal_{plant}"] = nominal_table(runs, plant, DRIVEN)
+        tables[f"changes_{plant}"] = changes_table(runs, plant, ALL_LAW)
     return Measured(tables)
 
 
@@ -280,17 +280,17 @@ REMEDY = REMEDIES[1]
 
 
 def again() -> dict[str, Table]:
-    found, law = Found(), [("k_d", "tipin15")]
-    found.of(cases([*law, (REMEDY.parameter, "tipin15")], [SOFT], NOISES[:1], SUSPECTS[:1]))
+    runs, law = Found(), [("k_d", "tipin15")]
+    runs.of(cases([*law, (REMEDY.parameter, "tipin15")], [SOFT], NOISES[:1], SUSPECTS[:1]))
     tables = {
-        "remedies": remedies_table(found, [REMEDY]),
-        "cars": cars_table(found, [SOFT]),
-        "rest": rest_table(found, NOISES[:1]),
-        "fallback": fallback_table(found, SUSPECTS[:1]),
+        "remedies": remedies_table(runs, [REMEDY]),
+        "cars": cars_table(runs, [SOFT]),
+        "rest": rest_table(runs, NOISES[:1]),
+        "fallback": fallback_table(runs, SUSPECTS[:1]),
     }
     for plant in PLANTS:
-        tables[f"nominal_{plant}"] = nominal_table(found, plant, ["tipin15"])
-        tables[f"changes_{plant}"] = changes_table(found, plant, law)
+        tables[f"nominal_{plant}"] = nominal_table(runs, plant, ["tipin15"])
+        tables[f"changes_{plant}"] = changes_table(runs, plant, law)
     return tables
 
 

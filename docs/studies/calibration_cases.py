@@ -64,7 +64,7 @@ class Case(NamedTuple):
 
     plant: str
     manoeuvre: str
-    given: Given = ()
+    parameters: Given = ()
 
 
 class Answer(NamedTuple):
@@ -81,7 +81,9 @@ def answered(case: Case, seeds: tuple[int, ...] = SEEDS, settings: Settings | No
         settings: of the runs beside what the case says.
     """
     manoeuvre = {**MANOEUVRES, STANDSTILL.name: STANDSTILL}[case.manoeuvre]
-    runs = [simulate(manoeuvre, settings, plant=case.plant, parameters=dict(case.given), seed=seed) for seed in seeds]
+    runs = [
+        simulate(manoeuvre, settings, plant=case.plant, parameters=dict(case.parameters), seed=seed) for seed in seeds
+    ]
     fallback = np.mean([np.mean(run["controller.status"] == FALLBACK) for run in runs])
     return Answer(mean([evaluate(run, manoeuvre) for run in runs]), float(fallback))
 
@@ -123,7 +125,7 @@ class Suspect(NamedTuple):
     """What could lead to fallback without a fault: in words, what is set in car and controller, and what helps."""
 
     what: str
-    given: Given
+    parameters: Given
     helps: str
 
 

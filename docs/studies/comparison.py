@@ -53,35 +53,35 @@ def all_found(manoeuvres: Collection[str], seeds: Sequence[int] = HELD_OUT_SEEDS
         (plant, name, controller), seed = run
         return evaluate(simulate(MANOEUVRES[name], plant, controller=controller, seed=seed), MANOEUVRES[name])
 
-    keys = [Key(*each) for each in product(PLANTS, manoeuvres, CONTROLLERS)]
+    keys = [Key(*combination) for combination in product(PLANTS, manoeuvres, CONTROLLERS)]
     runs = list(product(keys, seeds))
     metrics = dict(zip(runs, run_many(measured, runs, label="controllers"), strict=True))
     return {key: mean([metrics[key, seed] for seed in seeds]) for key in keys}
 
 
-def tables(found: Found) -> dict[str, Table]:
+def tables(metrics_of: Found) -> dict[str, Table]:
     """For each plant and metric a row for each manoeuvre, a column for each controller."""
-    made: dict[str, Table] = {}
+    by_name: dict[str, Table] = {}
     for plant, metric in product(PLANTS, COMPARED):
         shown = SHOWN[metric]
         rows: dict[str, tuple[Cell, ...]] = {}
-        for manoeuvre in dict.fromkeys(key.manoeuvre for key in found):
-            of = [found[Key(plant, manoeuvre, controller)] for controller in CONTROLLERS]
-            values = [cell(abs(getattr(each, metric)) * shown.factor) for each in of]
+        for manoeuvre in dict.fromkeys(key.manoeuvre for key in metrics_of):
+            of = [metrics_of[Key(plant, manoeuvre, controller)] for controller in CONTROLLERS]
+            values = [cell(abs(getattr(metrics, metric)) * shown.factor) for metrics in of]
             if values[0] is not None:
                 rows[manoeuvre] = tuple(values)
         columns = tuple(Column(name, "", shown.decimals) for name in CONTROLLERS)
         if rows:
             label = f"{plant}: {shown.plain_heading}, {shown.unit}"
-            made[f"{plant}_{metric}"] = Table(label, columns, rows)
-    return made
+            by_name[f"{plant}_{metric}"] = Table(label, columns, rows)
+    return by_name
 
 
-def better_table(found: Found) -> Table:
+def better_table(metrics_of: Found) -> Table:
     """Where a comparator beats ours, and what is dearer there."""
     rows: dict[str, tuple[Cell, ...]] = {}
     for plant, manoeuvre, name in product(PLANTS, DRIVEN, (name for name in COMPARATORS if name != MARK)):
-        ours, its = found[Key(plant, manoeuvre, OURS)], found[Key(plant, manoeuvre, name)]
+        ours, its = metrics_of[Key(plant, manoeuvre, OURS)], metrics_of[Key(plant, manoeuvre, name)]
         gains = list(_compared(its, ours, COMPARED, below=1.0))
         if gains:
             prices = list(_compared(its, ours, PRICES, above=DEARER))
@@ -95,7 +95,7 @@ def _compared(
     """The metrics that are less than `below` times ours, or more than `above` times, as they are shown."""
     for name in names:
         column = SHOWN[name]
-        values = [abs(getattr(each, name)) * column.factor for each in (its, ours)]
+        values = [abs(getattr(metrics, name)) * column.factor for metrics in (its, ours)]
         if any(map(isnan, values)):
             continue
         shown, of_ours = (number(value, Column("", "", column.decimals)) for value in values)
@@ -104,8 +104,8 @@ def _compared(
 
 
 def measure() -> Measured:
-    found = all_found(DRIVEN)
-    return Measured({**tables(found), "better": better_table(found)})
+    metrics_of = all_found(DRIVEN)
+    return Measured({**tables(metrics_of), "better": better_table(metrics_of)})
 
 
 def again() -> dict[str, Table]:

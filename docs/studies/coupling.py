@@ -48,10 +48,10 @@ def orders_table(comparisons: Iterable[Comparison]) -> Table:
 def dead_times_table(couplings: Iterable[Coupling]) -> Table:
     """What is added to each connection, and around the loop."""
     todo = list(couplings)
-    found = run_many(lambda each: dead_times(*each), todo, label="dead times")
+    times = run_many(lambda pair: dead_times(*pair), todo, label="dead times")
     rows = {
         f"{scheme.value}, {1e3 * step:g} ms": tuple(1e3 * late[column.name] for column in DEAD_TIMES)
-        for (scheme, step), late in zip(todo, found, strict=True)
+        for (scheme, step), late in zip(todo, times, strict=True)
     }
     return Table("scheme, communication step", DEAD_TIMES, rows)
 
@@ -59,9 +59,9 @@ def dead_times_table(couplings: Iterable[Coupling]) -> Table:
 def metrics_table(cases: Iterable[Case]) -> Table:
     """Of all metrics that a run has, the one that depends on the communication step most."""
     todo = list(cases)
-    found = dict(zip(todo, run_many(deviations_of, todo, label="communication steps"), strict=True))
+    deviations = dict(zip(todo, run_many(deviations_of, todo, label="communication steps"), strict=True))
     rows = {
-        f"{case.plant}, {case.manoeuvre}": (*_worst(found[case]), *_worst(found[case._replace(control=True)]))
+        f"{case.plant}, {case.manoeuvre}": (*_worst(deviations[case]), *_worst(deviations[case._replace(control=True)]))
         for case in todo
         if not case.control
     }

@@ -80,10 +80,10 @@ def reference(plant: str, manoeuvre: Manoeuvre, parameters: Mapping[str, float])
         instance, _, parameter = name.partition(".")
         by_instance.setdefault(instance, {})[parameter] = value
 
-    def given(k: int) -> tuple[float, float, float]:
+    def driver_and_road(k: int) -> tuple[float, float, float]:
         return float(manoeuvre.T_driver(k * INTERVAL)), 0.0, 0.0
 
-    results = monolithic.run(PLANTS[plant], given, manoeuvre.duration, by_instance)
+    results = monolithic.run(PLANTS[plant], driver_and_road, manoeuvre.duration, by_instance)
     return results[:: round(T_S / INTERVAL)]
 
 

@@ -61,13 +61,14 @@ def read(name: str) -> Kept:
     Raises:
         FileNotFoundError: it has not been measured yet.
     """
-    found = json.loads(file_of(name).read_text(encoding="utf-8"))
+    content = json.loads(file_of(name).read_text(encoding="utf-8"))
     tables = {
-        key: Table(of["label"], tuple(Column(*each) for each in of["columns"]), _rows(of["rows"]), of["note"])
-        for key, of in found["tables"].items()
+        key: Table(of["label"], tuple(Column(*fields) for fields in of["columns"]), _rows(of["rows"]), of["note"])
+        for key, of in content["tables"].items()
     }
-    figures = {key: _decoded(of) for key, of in found["figures"].items()}
-    return Kept(found["commit"], found["date"], found["versions"], found["cpu_seconds"], Measured(tables, figures))
+    figures = {key: _decoded(of) for key, of in content["figures"].items()}
+    measured = Measured(tables, figures)
+    return Kept(content["commit"], content["date"], content["versions"], content["cpu_seconds"], measured)
 
 
 def write(name: str, measured: Measured, seeds: Sequence[int], cpu_seconds: float) -> None:
@@ -98,13 +99,13 @@ def _text(value: Any, depth: int = 0) -> str:
     """JSON with a line for each row of a table: what has changed is seen in a diff."""
     if isinstance(value, Mapping) and value and depth < 4:
         indent = "\n" + " " * (depth + 1)
-        lines = (f"{indent}{json.dumps(key)}: {_text(each, depth + 1)}" for key, each in value.items())
+        lines = (f"{indent}{json.dumps(key)}: {_text(item, depth + 1)}" for key, item in value.items())
         return f"{{{','.join(lines)}\n{' ' * depth}}}"
     return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
-def _rows(found: Mapping[str, Sequence[Any]]) -> dict[str, tuple[Any, ...]]:
-    return {row: tuple(cells) for row, cells in found.items()}
+def _rows(rows: Mapping[str, Sequence[Any]]) -> dict[str, tuple[Any, ...]]:
+    return {row: tuple(cells) for row, cells in rows.items()}
 
 
 def _commit() -> str:
@@ -159,28 +160,28 @@ def _encoded(value: Any) -> Any:
     match value:
         case Drawing() | panels.Panel() | panels.Axis():
             fields = value._asdict() if isinstance(value, tuple) else vars(value)
-            return {"is": type(value).__name__, **{name: _encoded(each) for name, each in fields.items()}}
+            return {"is": type(value).__name__, **{name: _encoded(field) for name, field in fields.items()}}
         case tuple() if hasattr(value, "_fields"):
             fields = thinned(value)._asdict()
-            return {"is": type(value).__name__, **{name: _encoded(each) for name, each in fields.items()}}
+            return {"is": type(value).__name__, **{name: _encoded(field) for name, field in fields.items()}}
         case np.ndarray():
-            return [_short(each, POINT_DIGITS) for each in value.astype(float).tolist()]
+            return [_short(number, POINT_DIGITS) for number in value.astype(float).tolist()]
         case Mapping():
-            return [[_encoded(key), _encoded(each)] for key, each in value.items()]
+            return [[_encoded(key), _encoded(item)] for key, item in value.items()]
         case list() | tuple():
-            return [_encoded(each) for each in value]
+            return [_encoded(item) for item in value]
     return _short(value, POINT_DIGITS)
 
 
 def _decoded(value: Any) -> Any:
     if isinstance(value, list):
-        return tuple(_decoded(each) for each in value)
+        return tuple(_decoded(item) for item in value)
     if not isinstance(value, dict):
         return value
     kind = getattr(panels, value["is"])
-    fields = {name: _decoded(each) for name, each in value.items() if name != "is"}
+    fields = {name: _decoded(item) for name, item in value.items() if name != "is"}
     for name in getattr(kind, "ARRAYS", ()):
-        fields[name] = np.array([np.nan if each is None else each for each in fields[name]], dtype=float)
+        fields[name] = np.array([np.nan if number is None else number for number in fields[name]], dtype=float)
     if kind is panels.Panel:
         fields["ticks"] = dict(fields["ticks"])
     return kind(**fields)

@@ -99,14 +99,14 @@ LATE_PROBE = short("late probe", "the same, T_S later", sine(T_S))
 
 def dead_times(scheme: Scheme, step_size: float, folder: Path = BUILD) -> dict[str, float]:
     """Dead time in s of every section, by its name; negative where a signal comes too early."""
-    found = {}
+    times = {}
     for parameters, sections in EXPERIMENTS:
         exact, late = (reference(PLANT, probe, parameters) for probe in (PROBE, LATE_PROBE))
         results = cosimulated(PLANT, PROBE, parameters, step_size, scheme, folder)
         for section in sections:
             after, before = (lateness(results[s], exact[s], late[s]) for s in (section.sink, section.source))
-            found[section.name] = after - before
-    return found
+            times[section.name] = after - before
+    return times
 
 
 def lateness(signal: np.ndarray, exact: np.ndarray, late: np.ndarray) -> float:

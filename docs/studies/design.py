@@ -39,7 +39,7 @@ def modes_table(cars: Iterable[str]) -> Table:
     def modes(vehicle: Path | None) -> tuple[Cell, ...]:
         entries = read_vehicle(vehicle) if vehicle else {}
         usual, own = (swing(PLANTS[0], entries, gains) for gains in (design(), own_gains(vehicle)))
-        return own.frequency, *(each.damped.damping_ratio if each.damped else None for each in (usual, own))
+        return own.frequency, *(train.damped.damping_ratio if train.damped else None for train in (usual, own))
 
     return Table("car", MODES, {name: modes(CARS[name]) for name in cars})
 
@@ -47,8 +47,8 @@ def modes_table(cars: Iterable[str]) -> Table:
 def runs_table(trials: Iterable[Trial]) -> Table:
     """The metrics of trials."""
     todo = list(trials)
-    found = zip(todo, run_many(measured, todo, label="cars"), strict=True)
-    rows = {named(trial): tuple(cell(m.of(each) * c.factor) for m, c in SHOWN) for trial, each in found}
+    pairs = zip(todo, run_many(measured, todo, label="cars"), strict=True)
+    rows = {named(trial): tuple(cell(m.of(metrics) * c.factor) for m, c in SHOWN) for trial, metrics in pairs}
     return Table("car, plant, manoeuvre, gains", COLUMNS, rows)
 
 
@@ -60,7 +60,7 @@ def named(trial: Trial) -> str:
 
 def all_trials() -> list[Trial]:
     """The default car's own gains are the default ones."""
-    every = (Trial(*each) for each in product(CARS.values(), PLANTS, MANOEUVRES, Gains))
+    every = (Trial(*combination) for combination in product(CARS.values(), PLANTS, MANOEUVRES, Gains))
     return [trial for trial in every if trial.vehicle or trial.gains is not Gains.OWN]
 
 

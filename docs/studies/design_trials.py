@@ -58,13 +58,13 @@ def measured(trial: Trial, seeds: tuple[int, ...] = (1, 2, 3), settings: Setting
     Args:
         settings: of the runs beside what the trial says.
     """
-    given, control = parameters(trial), trial.gains is not Gains.NONE
-    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], given_torque(given))
-    made = settings_of(settings, plant=trial.plant, control=control, parameters=given)
-    return mean([evaluate(simulate(manoeuvre, made, seed=seed), manoeuvre) for seed in seeds])
+    values, control = parameters(trial), trial.gains is not Gains.NONE
+    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], given_torque(values))
+    of_run = settings_of(settings, plant=trial.plant, control=control, parameters=values)
+    return mean([evaluate(simulate(manoeuvre, of_run, seed=seed), manoeuvre) for seed in seeds])
 
 
-def mean(found: Sequence[Metrics]) -> Metrics:
+def mean(runs: Sequence[Metrics]) -> Metrics:
     """Each metric as the mean over runs; it has no value where one of them has none."""
-    means = {metric.name: float(np.mean([metric.of(metrics) for metrics in found])) for metric in declared(Metrics)}
-    return Metrics(**means, absent={name: why for metrics in found for name, why in metrics.absent.items()})
+    means = {metric.name: float(np.mean([metric.of(metrics) for metrics in runs])) for metric in declared(Metrics)}
+    return Metrics(**means, absent={name: why for metrics in runs for name, why in metrics.absent.items()})

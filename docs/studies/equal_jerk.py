@@ -47,9 +47,9 @@ def at_jerk(most: float, jerk: np.ndarray, delay: np.ndarray) -> tuple[float, fl
 
 def table(controllers: tuple[str, ...]) -> Table:
     trials = list(product(PLANTS, controllers, RISES))
-    found = np.reshape(run_many(measured, trials, label="equal jerk"), (len(PLANTS), len(controllers), len(RISES), 2))
+    answers = np.reshape(run_many(measured, trials, label="equal jerk"), (len(PLANTS), len(controllers), len(RISES), 2))
     rows: dict[str, tuple[Cell, ...]] = {}
-    for plant, of_plant in zip(PLANTS, found, strict=True):
+    for plant, of_plant in zip(PLANTS, answers, strict=True):
         pairs = [at_jerk(of_plant[0, 0, 0], *of_controller.T) for of_controller in of_plant]
         for what, values in zip(("rise", "time to 90 %"), zip(*pairs, strict=True), strict=True):
             rows[f"{plant}: {what}, ms"] = tuple(cell(1e3 * value) for value in values)

@@ -87,8 +87,8 @@ def share_in_fallback(plant: str, drive: Drive) -> float:
 def shares(drives: Sequence[Drive]) -> Table:
     """A row for each drive."""
     cases = [(plant, drive) for drive in drives for plant in PLANTS]
-    found = iter(run_many(lambda case: share_in_fallback(*case), cases, label="healthy drives"))
-    rows = {drive.manoeuvre.name: tuple(next(found) for _ in PLANTS) for drive in drives}
+    answers = iter(run_many(lambda case: share_in_fallback(*case), cases, label="healthy drives"))
+    rows = {drive.manoeuvre.name: tuple(next(answers) for _ in PLANTS) for drive in drives}
     return Table("drive", tuple(Column(f"{plant}, in fallback", "%", 0) for plant in PLANTS), rows)
 
 

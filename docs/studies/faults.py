@@ -28,7 +28,7 @@ def _runner() -> FaultRunner:
     return FaultRunner(made_if_missing(SIGNAL_FAULTS, BUILD, NATIVE), {plant: built(plant) for plant in PLANTS})
 
 
-def found(plan: str, numbers: Sequence[int]) -> list[Outcome]:
+def outcomes_of(plan: str, numbers: Sequence[int]) -> list[Outcome]:
     """What came of cases of a campaign."""
     return campaign(_runner(), numbers, SEED, plan=PLANS[plan])
 
@@ -54,7 +54,7 @@ def classes_table(outcomes: Sequence[Outcome]) -> Table:
             classes.setdefault(key, []).append(outcome)
     rows: dict[str, tuple[Cell, ...]] = {}
     for key, cases in sorted(classes.items()):
-        worst = max(cases, key=lambda each: each.measured[key[-1]])
+        worst = max(cases, key=lambda outcome: outcome.measured[key[-1]])
         rows[", ".join(key)] = (len(cases), cell(worst.measured[key[-1]]), worst.case.number)
     columns = (Column("cases", decimals=0), Column("worst"), Column("its number", decimals=0))
     return Table("fault, begin, plant, judge", columns, rows)
@@ -63,7 +63,7 @@ def classes_table(outcomes: Sequence[Outcome]) -> Table:
 def cases_table(outcomes: Sequence[Outcome]) -> Table:
     """What each judge measured."""
     columns = tuple(Column(judge.name, judge.unit if judge.unit != "1" else "") for judge in JUDGES)
-    rows = {str(each.case): tuple(cell(each.measured[judge.name]) for judge in JUDGES) for each in outcomes}
+    rows = {str(outcome.case): tuple(cell(outcome.measured[judge.name]) for judge in JUDGES) for outcome in outcomes}
     return Table("case", columns, rows)
 
 
@@ -71,7 +71,7 @@ def measure() -> Measured:
     tables: dict[str, Table] = {}
     rows: dict[str, tuple[Cell, ...]] = {}
     for plan, cases in CASES.items():
-        outcomes = found(plan, range(1, cases + 1))
+        outcomes = outcomes_of(plan, range(1, cases + 1))
         rows[plan] = (cases, sum(not outcome.failed for outcome in outcomes))
         for name, faults in (("single", 1), ("pair", 2)):
             its = [outcome for outcome in outcomes if len(outcome.kinds) == faults]
@@ -84,7 +84,7 @@ def measure() -> Measured:
 
 
 def again() -> dict[str, Table]:
-    return {"dry_cases": cases_table(found("dry", SENTINELS))}
+    return {"dry_cases": cases_table(outcomes_of("dry", SENTINELS))}
 
 
 NAMES = [str(case(number, SEED, PLANTS, PLANS["dry"])) for number in SENTINELS]

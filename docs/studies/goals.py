@@ -117,16 +117,16 @@ class Run(NamedTuple):
 
 def runs(goals: tuple[Goal, ...] = GOALS, seeds: tuple[int, ...] = HELD_OUT_SEEDS) -> list[Run]:
     """Those that tell how far the goals are reached, each once."""
-    found = [(plant, goal.manoeuvre, goal.deviation, True) for plant in PLANTS for goal in goals]
-    found += [(plant, goal.manoeuvre, goal.deviation, False) for plant in PLANTS for goal in goals if goal.over_none]
-    return [Run(*each, seed) for each in dict.fromkeys(found) for seed in seeds]
+    keys = [(plant, goal.manoeuvre, goal.deviation, True) for plant in PLANTS for goal in goals]
+    keys += [(plant, goal.manoeuvre, goal.deviation, False) for plant in PLANTS for goal in goals if goal.over_none]
+    return [Run(*key, seed) for key in dict.fromkeys(keys) for seed in seeds]
 
 
 def measured(run: Run, parameters: Mapping[str, Any], settings: Settings | None = None) -> Metrics:
     """The metrics of a run with these parameters of the controller, else with the settings."""
     manoeuvre = MANOEUVRES[run.manoeuvre]
-    given = deviating(parameters, run.plant, PLACES["controller"][0], run.deviation)
-    results = simulate(manoeuvre, settings, plant=run.plant, control=run.control, parameters=given, seed=run.seed)
+    of_loop = deviating(parameters, run.plant, PLACES["controller"][0], run.deviation)
+    results = simulate(manoeuvre, settings, plant=run.plant, control=run.control, parameters=of_loop, seed=run.seed)
     return evaluate(results, manoeuvre)
 
 
@@ -135,24 +135,25 @@ def all_measured(
 ) -> dict[Run, Metrics]:
     """The metrics of all runs with these parameters of the controller, else with the settings, made on all cores."""
     todo = runs(goals)
-    found = run_many(lambda run: measured(run, parameters, settings), todo, label="goals")
-    return dict(zip(todo, found, strict=True))
+    metrics = run_many(lambda run: measured(run, parameters, settings), todo, label="goals")
+    return dict(zip(todo, metrics, strict=True))
 
 
-def reached(goal: Goal, plant: str, found: Mapping[Run, Metrics]) -> float:
+def reached(goal: Goal, plant: str, metrics_of: Mapping[Run, Metrics]) -> float:
     """The magnitude of what a goal is set for, in the unit of the table: its mean over the seeds."""
 
     def mean(control: bool) -> float:
         its = (plant, goal.manoeuvre, goal.deviation, control)
-        return float(np.mean([abs(getattr(metrics, goal.metric)) for run, metrics in found.items() if run[:4] == its]))
+        those = [metrics for run, metrics in metrics_of.items() if run[:4] == its]
+        return float(np.mean([abs(getattr(metrics, goal.metric)) for metrics in those]))
 
     value = mean(True) - mean(False) if goal.over_none else mean(True)
     return UNITS[goal.metric][0] * value
 
 
-def all_reached(found: Mapping[Run, Metrics], goals: tuple[Goal, ...] = GOALS) -> dict[tuple[Goal, str], float]:
+def all_reached(metrics_of: Mapping[Run, Metrics], goals: tuple[Goal, ...] = GOALS) -> dict[tuple[Goal, str], float]:
     """Of the goals on all plants."""
-    return {(goal, plant): reached(goal, plant, found) for goal in goals for plant in PLANTS}
+    return {(goal, plant): reached(goal, plant, metrics_of) for goal in goals for plant in PLANTS}
 
 
 def most(goal: Goal, plant: str) -> float:
@@ -178,8 +179,8 @@ def monte_carlo(draws: int, parameters: Mapping[str, Any], settings: Settings | 
         for plant in PLANTS
     }
     runner = CaseRunner(loops, seed=1)
-    found = summary.summaries(campaign(runner, range(1, draws + 1)))
-    return [summary.goal(found, plant, controller) for plant in PLANTS]
+    of_loops = summary.summaries(campaign(runner, range(1, draws + 1)))
+    return [summary.goal(of_loops, plant, controller) for plant in PLANTS]
 
 
 def title(goal: Goal) -> str:
@@ -214,8 +215,8 @@ def trade_table(of_characters: Mapping[str, Reached]) -> Table:
     """What each character reaches of the goals that are missed as designed, and how many goals each misses."""
     rows: dict[str, tuple[Cell, ...]] = {}
     for key in missed(of_characters["as designed"]):
-        found = (values[key] for values in of_characters.values())
-        rows[f"{title(key[0])}, {key[1]}"] = (*found, float(most(*key)))
+        cells = (values[key] for values in of_characters.values())
+        rows[f"{title(key[0])}, {key[1]}"] = (*cells, float(most(*key)))
     rows["goals missed"] = (*(len(missed(values)) for values in of_characters.values()), 0)
     return Table("goal", tuple(map(Column, (*of_characters, "at most"))), rows)
 
@@ -253,7 +254,7 @@ def explore(arguments: Sequence[str]) -> None:
     show("reached", reached_table(all_reached(all_measured(parameters))))
     if args.draws > 0:
         pairs = zip(PLANTS, monte_carlo(args.draws, parameters), MONTE_CARLO, strict=True)
-        rows = {plant: (found, goal) for plant, found, goal in pairs}
+        rows = {plant: (shares, goal) for plant, shares, goal in pairs}
         what = f"{args.draws} draws: bounded and quiet; 95 % of settling of tip-in / launch"
         show("Monte-Carlo", Table("plant", (Column(what), Column("goal")), rows))
 

@@ -111,7 +111,7 @@ def acceleration(road: Road, v: float, T: float, T_brake: float) -> float:
     return float(force - 170.0 - 0.42 * v * v) / 1700.0
 
 
-def found(road: Road, seed: int) -> Found:
+def residuals_on(road: Road, seed: int) -> Found:
     manoeuvre, errors = drive(road, seed)
     surface = {"plant.mu": road.mu} if road.mu != 1.0 else {}
     rows = simulate(manoeuvre, road.plant, parameters={**errors, **surface}, seed=seed)[::TICK]
@@ -185,7 +185,7 @@ def roads_table(hours: float) -> Table:
     """The largest residuals on each road, over the thresholds from which on they count as a fault."""
     drives = max(1, round(hours * 3600.0 / MINUTE / len(ROADS)))
     rows = {
-        name: tuple(worst(run_many(partial(found, road), range(1, drives + 1), label=name)))
+        name: tuple(worst(run_many(partial(residuals_on, road), range(1, drives + 1), label=name)))
         for name, road in ROADS.items()
     }
     return Table("road", COLUMNS, rows, "From `jump` on: the largest residuals over their thresholds.")
@@ -193,7 +193,7 @@ def roads_table(hours: float) -> Table:
 
 def first_table() -> Table:
     """The first drive on each road."""
-    return Table("road", COLUMNS, {name: tuple(found(road, 1)) for name, road in ROADS.items()})
+    return Table("road", COLUMNS, {name: tuple(residuals_on(road, 1)) for name, road in ROADS.items()})
 
 
 def measure() -> Measured:
@@ -201,7 +201,7 @@ def measure() -> Measured:
 
 
 def again() -> dict[str, Table]:
-    return {"first": Table("road", COLUMNS, {name: tuple(found(ROADS[name], 1)) for name in SENTINELS})}
+    return {"first": Table("road", COLUMNS, {name: tuple(residuals_on(ROADS[name], 1)) for name in SENTINELS})}
 
 
 def explore(arguments: Sequence[str]) -> None:

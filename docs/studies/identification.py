@@ -43,7 +43,7 @@ def accuracy_tables() -> dict[str, Table]:
     known = run_many(accuracy, [(seed, ()) for seed in seeds], label="accuracy")
     free = run_many(accuracy, [(seed, ("J_1",)) for seed in seeds[:FREE_J_1]], label="accuracy with J_1 free")
     starts = run_many(from_random_starts, range(FIRST, FIRST + STARTS), label="wide starts")
-    right = sum(all(abs(_off(one, name)) < limit for name, limit in RIGHT.items()) for one in starts)
+    right = sum(all(abs(_off(start, name)) < limit for name, limit in RIGHT.items()) for start in starts)
     count = {
         "recordings": (len(known),),
         "with J_1 free": (len(free),),
@@ -56,32 +56,32 @@ def accuracy_tables() -> dict[str, Table]:
 def coverage_table() -> Table:
     seeds = range(FIRST, FIRST + LOOPS)
     chunks = run_many(covered, [(seed, OF_A_LOOP, False) for seed in seeds], label="foreign loops")
-    (found,) = run_many(covered, [(FIRST, FOUND, True)], label="foreign loops, from anywhere")
-    every = [one for chunk in chunks for one in chunk]
+    (anywhere,) = run_many(covered, [(FIRST, FOUND, True)], label="foreign loops, from anywhere")
+    every = [case for chunk in chunks for case in chunk]
     table = _coverage(every)
-    return table._replace(rows={**table.rows, "from anywhere, all": _coverage(found).rows["all, all"]})
+    return table._replace(rows={**table.rows, "from anywhere, all": _coverage(anywhere).rows["all, all"]})
 
 
 def short_table() -> Table:
-    found = short(FIRST)
+    identified = short(FIRST)
     columns = (
         Column("J_2", "kg.m2", None, 1e-3),
         Column("C", "N.m/rad", None, 1e-4),
         Column("phi_B", "rad", None, 1e-3),
     )
-    return Table("seed", columns, {str(FIRST): tuple(float(getattr(found.p, column.name)) for column in columns)})
+    return Table("seed", columns, {str(FIRST): tuple(float(getattr(identified.p, column.name)) for column in columns)})
 
 
 def vehicle_table() -> Table:
     cases = [(car, FIRST, True) for car in CARS] + [(next(iter(CARS)), FIRST, False)]
-    found = run_many(judged, cases, label="vehicle")
-    return _vehicle(dict(zip([*CARS, "default, no load torque"], found, strict=True)))
+    judgements = run_many(judged, cases, label="vehicle")
+    return _vehicle(dict(zip([*CARS, "default, no load torque"], judgements, strict=True)))
 
 
 def traps_table() -> Table:
     cases = [(k, FIRST + n) for k in range(len(TRAPS)) for n in range(OF_A_TRAP)]
-    found = run_many(trapped, cases, label="bad data")
-    traps = _traps([found[k : k + OF_A_TRAP] for k in range(0, len(found), OF_A_TRAP)])
+    answers = run_many(trapped, cases, label="bad data")
+    traps = _traps([answers[k : k + OF_A_TRAP] for k in range(0, len(answers), OF_A_TRAP)])
     return traps._replace(note=f"{OF_A_TRAP} recordings each.")
 
 
@@ -125,8 +125,8 @@ def _coverage(every: Sequence[Covered]) -> Table:
     """A row for each amplitude, without and with skew, and for all."""
     rows = []
     for skewed in (False, True):
-        for amplitude in sorted({one.amplitude for one in every}):
-            those = [one for one in every if (one.amplitude, one.skewed) == (amplitude, skewed)]
+        for amplitude in sorted({case.amplitude for case in every}):
+            those = [case for case in every if (case.amplitude, case.skewed) == (amplitude, skewed)]
             rows.append([f"{amplitude:g} N.m", "skewed" if skewed else "aligned", *_of_loops(those)])
     rows.append(["all", "all", *_of_loops(every)])
     headings = [
@@ -141,15 +141,15 @@ def _of_loops(those: Sequence[Covered]) -> list[str]:
     if not those:
         return ["0", *["-"] * 9]
     names = ("J_2", "C", "phi_B", "late_T", "late_L")
-    share = {name: np.array([one.off[name] / one.true[name] for one in those]) for name in RIGHT}
-    skew = 1e3 * np.array([max(abs(one.off[name]) for name in names[3:]) for one in those])
+    share = {name: np.array([case.off[name] / case.true[name] for case in those]) for name in RIGHT}
+    skew = 1e3 * np.array([max(abs(case.off[name]) for name in names[3:]) for case in those])
     right = np.all([abs(share[name]) < limit for name, limit in RIGHT.items()] + [skew < 1e3 * SKEW], axis=0)
-    inside = [np.mean([abs(one.off[name]) < Z_95 * one.deviations[name] for one in those]) for name in names]
+    inside = [np.mean([abs(case.off[name]) < Z_95 * case.deviations[name] for case in those]) for name in names]
     half, least = (
-        np.mean([100.0 * Z_95 * of["J_2"] / one.true["J_2"] for one, of in zip(those, each, strict=True)])
-        for each in ([one.deviations for one in those], [one.bound for one in those])
+        np.mean([100.0 * Z_95 * of["J_2"] / case.true["J_2"] for case, of in zip(those, limits, strict=True)])
+        for limits in ([case.deviations for case in those], [case.bound for case in those])
     )
-    wide = max(float(np.mean([one.deviations[name] / one.bound[name] for one in those])) for name in names)
+    wide = max(float(np.mean([case.deviations[name] / case.bound[name] for case in those])) for name in names)
     errors = [_rms_and_worst(100.0 * share[name]) for name in RIGHT]
     return [
         f"{len(those)}",
@@ -163,25 +163,25 @@ def _of_loops(those: Sequence[Covered]) -> list[str]:
     ]
 
 
-def _vehicle(found: Mapping[str, Judged]) -> Table:
+def _vehicle(cars: Mapping[str, Judged]) -> Table:
     """A row for each car."""
     rows = []
-    for name, one in found.items():
-        values, quality = one.answer.values, one.answer.quality
+    for name, car in cars.items():
+        values, quality = car.answer.values, car.answer.quality
         known = [
-            100.0 * Z_95 * one.answer.deviations["phi_B"] / values["phi_B"],
+            100.0 * Z_95 * car.answer.deviations["phi_B"] / values["phi_B"],
             *(values[n] for n in ("J_2", "C", "d")),
         ]
         rows.append(
             [
                 name,
-                f"{100.0 * (one.phi_B - 1.0):+.2f} +- {known[0]:.2f}",
-                f"{100.0 * (one.answer.resonance / one.peak - 1.0):+.2f}",
-                *(f"{of:.3f}" for of in one.gains),
-                f"{one.response:.2f}",
+                f"{100.0 * (car.phi_B - 1.0):+.2f} +- {known[0]:.2f}",
+                f"{100.0 * (car.answer.resonance / car.peak - 1.0):+.2f}",
+                *(f"{of:.3f}" for of in car.gains),
+                f"{car.response:.2f}",
                 *(f"{value:.4g}" for value in known[1:]),
                 *("-" if np.isnan(quality[of]) else f"{quality[of]:.1f}" for of in ("omega_1", "T_load")),
-                f"{one.answer.seconds:.0f}",
+                f"{car.answer.seconds:.0f}",
             ]
         )
     headings = [
@@ -193,16 +193,16 @@ def _vehicle(found: Mapping[str, Judged]) -> Table:
 
 def _traps(every: Sequence[Sequence[Answer]]) -> Table:
     rows = []
-    for trap, found in zip(TRAPS, every, strict=True):
+    for trap, answers in zip(TRAPS, every, strict=True):
         true = TRUE | {name.partition(".")[2]: value for name, value in trap.parameters.items() if name == "motor.tau"}
         inside = [
-            all(abs(one.z(name, true[name])) < 3.0 for name in ("J_2", "C", "phi_B", "tau")) and trap.J_1 == 1.0
-            for one in found
+            all(abs(answer.z(name, true[name])) < 3.0 for name in ("J_2", "C", "phi_B", "tau")) and trap.J_1 == 1.0
+            for answer in answers
         ]
-        named = [bool(trap.cause) and any(trap.cause in warning for warning in one.warnings) for one in found]
+        named = [bool(trap.cause) and any(trap.cause in warning for warning in answer.warnings) for answer in answers]
         fine = [a or b for a, b in zip(inside, named, strict=True)]
         shares = [f"{100.0 * np.mean(share):.0f}" for share in (inside, named, fine)]
-        J_2 = _rms_and_worst([100.0 * _off(one, "J_2") for one in found])
+        J_2 = _rms_and_worst([100.0 * _off(answer, "J_2") for answer in answers])
         rows.append([trap.name, shares[0], shares[1] if trap.cause else "-", shares[2], J_2])
     headings = ["", "right within 3 sd, %", "cause named, %", "either, %", "J_2 off by, % (rms / worst)"]
     return table_of(headings, rows, labels=1)

@@ -21,8 +21,7 @@ from driveline.harness.design.design import design
 from driveline.harness.design.design_weights import MOTOR, PLANT, records
 from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.redesign import REDESIGN_MANOEUVRES
-from driveline.harness.identification.car_file import found as rows_of
-from driveline.harness.identification.car_file import identified_car
+from driveline.harness.identification.car_file import identified_car, rows_of
 from driveline.harness.identification.drive_train_response import response
 from driveline.harness.identification.estimator import Z_95, Found, search
 from driveline.harness.identification.identify import FREE, Identified, of_sensors
@@ -66,8 +65,8 @@ def recording(
     """
     of, _, _ = records(car or {})
     drive = binary_torque("prbs", **TEST_DRIVE, v_0=TEST_SPEED / 3.6)
-    given = loop_parameters(car or {}, plant) | dict(parameters or {})
-    results = simulate(drive, plant, control=False, parameters=given, seed=seed)
+    of_loop = loop_parameters(car or {}, plant) | dict(parameters or {})
+    results = simulate(drive, plant, control=False, parameters=of_loop, seed=seed)
     with TemporaryDirectory() as folder:
         path = Path(folder, f"{plant}_{seed}.csv")
         write_csv(sensed(results, of.i, wheels, seed), path)
@@ -105,14 +104,14 @@ def identified(recorded: Measurement, vehicle: Mapping[str, float], more: Sequen
     return answer_of(identify(recorded, vehicle, more), process_time() - began)
 
 
-def answer_of(one: Identified, seconds: float) -> Answer:
-    values = {name: float(value) for name, value in one.p._asdict().items()}
-    deviations = dict(one.found.deviations)
-    phi_B = next(row for row in rows_of(one) if row.name == "phi_B")
+def answer_of(identified: Identified, seconds: float) -> Answer:
+    values = {name: float(value) for name, value in identified.p._asdict().items()}
+    deviations = dict(identified.found.deviations)
+    phi_B = next(row for row in rows_of(identified) if row.name == "phi_B")
     values["phi_B"], deviations["phi_B"] = phi_B.value, phi_B.half / Z_95
-    if one.loop:
-        values["tau"], deviations["tau"] = one.loop.loop.tau, one.loop.deviations["tau"]
-    return Answer(values, deviations, one.warnings, asdict(one.quality), one.resonance, seconds)
+    if identified.loop:
+        values["tau"], deviations["tau"] = identified.loop.loop.tau, identified.loop.deviations["tau"]
+    return Answer(values, deviations, identified.warnings, asdict(identified.quality), identified.resonance, seconds)
 
 
 def accuracy(case: tuple[int, tuple[str, ...]]) -> Answer:
@@ -163,9 +162,9 @@ def covered(case: tuple[int, int, bool]) -> list[Covered]:
             recorded = read_measurement(path, car.i, car.r)
         late_T, late_L = loop.shifts
         true = {"J_2": car.J_2, "C": car.C, "phi_B": car.phi_B, "late_T": late_T, "late_L": late_L}
-        found = identify(recorded, car.known).found if from_anywhere else from_truth(recorded, car, true)
-        off = {name: getattr(found.p, name) - value for name, value in true.items()}
-        answers.append(Covered(loop.amplitude, bool(k % 2), off, true, found.deviations, bound(found)))
+        estimate = identify(recorded, car.known).found if from_anywhere else from_truth(recorded, car, true)
+        off = {name: getattr(estimate.p, name) - value for name, value in true.items()}
+        answers.append(Covered(loop.amplitude, bool(k % 2), off, true, estimate.deviations, bound(estimate)))
     return answers
 
 
@@ -178,13 +177,13 @@ def from_truth(recorded: Measurement, car: Car, true: Mapping[str, float]) -> Fo
     return search(predictor, start, FREE, expected._replace(d=expected.damping))
 
 
-def bound(found: Found) -> dict[str, float]:
+def bound(estimate: Found) -> dict[str, float]:
     """Cramer-Rao bound of the standard deviations, with what is known before; without what the model lacks."""
-    keep = [k for k, name in enumerate(found.free) if not name.startswith("lack_")]
-    information = found.information.sum(axis=0) + np.diag(before(found.free))
+    keep = [k for k, name in enumerate(estimate.free) if not name.startswith("lack_")]
+    information = estimate.information.sum(axis=0) + np.diag(before(estimate.free))
     inverse = np.linalg.inv(information[np.ix_(keep, keep)])
-    deviations = np.sqrt(np.diag(inverse)) * found.scale[keep]
-    return {found.free[k]: float(deviation) for k, deviation in zip(keep, deviations, strict=True)}
+    deviations = np.sqrt(np.diag(inverse)) * estimate.scale[keep]
+    return {estimate.free[k]: float(deviation) for k, deviation in zip(keep, deviations, strict=True)}
 
 
 SHORT = 4.0
@@ -283,11 +282,11 @@ def judged(case: tuple[str, int, bool]) -> Judged:
     recorded = recorded if measured else replace(recorded, T_load=None)
     before = {entry: value for entry, value in car.items() if entry not in ("C", "phi_B", "tau")}
     began = process_time()
-    one = identify(recorded, before)
-    answer = answer_of(one, process_time() - began)
+    identified = identify(recorded, before)
+    answer = answer_of(identified, process_time() - began)
     true = true_response(name)
-    off = 20.0 * np.log10(abs(response(one.p, RESPONSE, one.tyre_of(one.p)) / true))
-    own, others = worth(car, identified_car(one, before)), worth(car, car)
+    off = 20.0 * np.log10(abs(response(identified.p, RESPONSE, identified.tyre_of(identified.p)) / true))
+    own, others = worth(car, identified_car(identified, before)), worth(car, car)
     return Judged(
         answer,
         answer.values["phi_B"] / records(car)[0].phi_B,
@@ -307,12 +306,12 @@ def worth(car: Mapping[str, Any], assumed: Mapping[str, Any]) -> tuple[float, fl
 @cache
 def true_response(name: str) -> np.ndarray:
     """omega_1 over T_mot of one of CARS in contact, at RESPONSE."""
-    given: dict[str, dict[str, Any]] = {}
+    by_instance: dict[str, dict[str, Any]] = {}
     for entry, value in loop_parameters(CARS[name], VEHICLE).items():
         instance, _, parameter = entry.partition(".")
-        given.setdefault(instance, {})[parameter] = value
+        by_instance.setdefault(instance, {})[parameter] = value
     torque = TEST_DRIVE["mean"] + TEST_DRIVE["amplitude"]
-    car = linear(Point(plant=validation_vehicle.BLOCK, parameters=given, T=torque))
+    car = linear(Point(plant=validation_vehicle.BLOCK, parameters=by_instance, T=torque))
     s = 2j * np.pi * RESPONSE
     x = np.array([np.linalg.solve(at * np.eye(len(car.A)) - car.A, car.B) for at in s])
     T_mot, omega_1 = (x @ car.rows([signal])[0] for signal in ("T_mot_est", "omega_1"))

@@ -70,12 +70,12 @@ class Found(NamedTuple):
 
 def measured(case: tuple[Car, int]) -> Found:
     car, seed = case
-    given = deviating({}, car.plant, PLACES["controller"][0], Deviation(phi_B=car.gap, C=car.C, m=car.m))
-    driven = at_samples(simulate(city(seed), car.plant, parameters=given, seed=seed))["controller.phi_B_hat"]
+    of_car = deviating({}, car.plant, PLACES["controller"][0], Deviation(phi_B=car.gap, C=car.C, m=car.m))
+    driven = at_samples(simulate(city(seed), car.plant, parameters=of_car, seed=seed))["controller.phi_B_hat"]
     quarters = [driven[round(share * (len(driven) - 1))] for share in (0.25, 0.5, 0.75, 1.0)]
 
     def tip_in(**of_controller: float) -> tuple[float, float]:
-        parameters = given | {f"controller.{name}": value for name, value in of_controller.items()}
+        parameters = of_car | {f"controller.{name}": value for name, value in of_controller.items()}
         results = simulate(STEP, car.plant, parameters=parameters, seed=seed)
         rate = np.abs(np.diff(at_samples(results)["plant.T_gear"])).max() / T_S
         return 1e2 * evaluate(results, STEP).overshoot, 1e-3 * float(rate)
@@ -101,14 +101,14 @@ TIP_INS = tuple(
 def tables(cars: list[Car]) -> dict[str, Table]:
     """What is learned, and what it is worth."""
     cases = list(product(cars, SEEDS))
-    found = dict(zip(cases, run_many(measured, cases, label="learned gap"), strict=True))
+    gaps = dict(zip(cases, run_many(measured, cases, label="learned gap"), strict=True))
     learned, tip_ins = {}, {}
     for car in cars:
-        of = [found[car, seed] for seed in SEEDS]
-        quarters, last = np.mean([each.learned for each in of], axis=0), [each.learned[-1] for each in of]
+        of = [gaps[car, seed] for seed in SEEDS]
+        quarters, last = np.mean([gap.learned for gap in of], axis=0), [gap.learned[-1] for gap in of]
         learned[str(car)] = (*map(float, quarters), min(last), max(last))
         if car.C == car.m == 1.0:
-            means = np.mean([(each.told, each.known, each.declared) for each in of], axis=0)
+            means = np.mean([(gap.told, gap.known, gap.declared) for gap in of], axis=0)
             tip_ins[str(car)] = tuple(map(float, means.T.ravel()))
     note = f"Means over {len(SEEDS)} drives, over the true gap; least and most at the end."
     return {

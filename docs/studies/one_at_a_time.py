@@ -54,22 +54,22 @@ class Closest(NamedTuple):
 def changes() -> list[Change]:
     """Of each parameter that a search for gains may change."""
     searched = space(PLACES["controller"][0], {}).searched
-    return [Change(each.name, float(f"{each.start * factor:.4g}")) for each in searched for factor in FACTORS]
+    return [Change(p.name, float(f"{p.start * factor:.4g}")) for p in searched for factor in FACTORS]
 
 
 def all_changed(
-    found: Mapping[Run, Metrics], todo: Sequence[Change], goals: tuple[Goal, ...] = GOALS
+    metrics_of: Mapping[Run, Metrics], todo: Sequence[Change], goals: tuple[Goal, ...] = GOALS
 ) -> dict[Change, Reached]:
     """What changes reach, on all cores.
 
     Args:
         found: the runs without a change, of which those without control are taken.
     """
-    without = {run: metrics for run, metrics in found.items() if not run.control}
+    without = {run: metrics for run, metrics in metrics_of.items() if not run.control}
 
     def changed(change: Change) -> Reached:
-        made = {run: measured(run, {change.parameter: change.value}) for run in runs(goals) if run.control}
-        return all_reached({**without, **made}, goals)
+        changed_runs = {run: measured(run, {change.parameter: change.value}) for run in runs(goals) if run.control}
+        return all_reached({**without, **changed_runs}, goals)
 
     return dict(zip(todo, run_many(changed, todo, label="changes"), strict=True))
 
@@ -89,17 +89,17 @@ def closest(key: tuple[Goal, str], values: Reached, changed: Mapping[Change, Rea
 
     enough = [change for change in changed if key not in missed(changed[change])]
     if enough:
-        change = min(enough, key=lambda each: (len(instead(each)), changed[each][key]))
+        change = min(enough, key=lambda candidate: (len(instead(candidate)), changed[candidate][key]))
     else:
-        change = min(changed, key=lambda each: changed[each][key])
+        change = min(changed, key=lambda candidate: changed[candidate][key])
     return Closest(change, changed[change][key], instead(change))
 
 
 def harmless(values: Reached, changed: Mapping[Change, Reached]) -> int:
     """How many of the goals that are missed one change reaches at the most without missing another one."""
     before = set(missed(values))
-    after = (set(missed(each)) for each in changed.values())
-    return max((len(before - each) for each in after if each <= before), default=0)
+    after = (set(missed(goals)) for goals in changed.values())
+    return max((len(before - goals) for goals in after if goals <= before), default=0)
 
 
 NAMED = 3
@@ -133,8 +133,8 @@ def instead_table(values: Reached, changed: Mapping[Change, Reached]) -> Table:
 
 
 def measure() -> Measured:
-    found = all_measured({})
-    values, changed = all_reached(found), all_changed(found, changes())
+    metrics_of = all_measured({})
+    values, changed = all_reached(metrics_of), all_changed(metrics_of, changes())
     count = {"reached by one change without missing another": (harmless(values, changed),)}
     return Measured(
         {

@@ -46,7 +46,7 @@ def frequencies(car: Car) -> Frequencies:
         for plant in (DESIGN, DETAILED)
     ]
     J_1, J_2, C = (full.get(name, DEFAULT_CAR[name]) for name in ("J_1", "J_2", "C"))
-    return Frequencies(sqrt(C * (1.0 / J_1 + 1.0 / J_2)) / (2.0 * pi), *(each.frequency for each in swings))
+    return Frequencies(sqrt(C * (1.0 / J_1 + 1.0 / J_2)) / (2.0 * pi), *(swing.frequency for swing in swings))
 
 
 def drawn(random: Random) -> dict[str, float]:
@@ -89,16 +89,16 @@ def frequencies_table(chosen: Mapping[str, Car]) -> Table:
     usual = frequencies({}).apart
     rows: dict[str, tuple[Cell, ...]] = {}
     for name, car in chosen.items():
-        found = frequencies(car)
+        own = frequencies(car)
         k_s = of_one_car(car, FOLLOW).get("k_s", DEFAULT_CAR["k_s"])
-        rows[name] = (*found, found.apart, found.apart / usual, k_s)
+        rows[name] = (*own, own.apart, own.apart / usual, k_s)
     return Table("car", COLUMNS, rows)
 
 
 def spread_table(table: Table) -> Table:
     """The least and the largest of each column."""
     columns = list(zip(*table.rows.values(), strict=True))
-    return Table("of all cars", COLUMNS, {each.__name__: tuple(map(each, columns)) for each in (min, max)})
+    return Table("of all cars", COLUMNS, {extreme.__name__: tuple(map(extreme, columns)) for extreme in (min, max)})
 
 
 def measure() -> Measured:

@@ -66,13 +66,13 @@ def recorded(
     plant: str, car: Mapping[str, float], step: str, seed: int, settings: Settings | None = None
 ) -> Measurement:
     """A step without control, as the sensors of the motor tell it every 2 ms."""
-    made = settings_of(settings, plant=plant, control=False, parameters=loop_parameters(car, plant), seed=seed)
-    signals = simulate(MANOEUVRES[step], made)[::2]
+    of_run = settings_of(settings, plant=plant, control=False, parameters=loop_parameters(car, plant), seed=seed)
+    signals = simulate(MANOEUVRES[step], of_run)[::2]
     time, T_mot, omega_1 = (np.array(signals[name]) for name in ("time", "motor.T_mot_est", "motor.omega_1_meas"))
     return Measurement(step, time, T_mot, omega_1, omega_1, None, None, None, None, {}, (), {})
 
 
-def found(case: tuple[int, str]) -> Found:
+def identified_car(case: tuple[int, str]) -> Found:
     """What a step of a car tells, by its seed and kind."""
     seed, kind = case
     car, known = drawn(seed, kind)
@@ -100,11 +100,9 @@ def table(cases: Mapping[str, Sequence[Found]]) -> Table:
     def cells(those: Sequence[Found]) -> tuple[Cell, ...]:
         row: list[Any] = [len(those)]
         for name in ("C", "phi_B"):
-            off, half = (np.array([getattr(each, what)[name] for each in those]) for what in ("off", "halves"))
+            off, half = (np.array([getattr(case, what)[name] for case in those]) for what in ("off", "halves"))
             inside = np.mean(np.abs(off) <= half)
-            row += [
-                float(100.0 * each) for each in (np.sqrt(np.mean(off**2)), np.abs(off).max(), np.median(half), inside)
-            ]
+            row += [float(100.0 * x) for x in (np.sqrt(np.mean(off**2)), np.abs(off).max(), np.median(half), inside)]
         return tuple(row)
 
     return Table("recorded on", COLUMNS, {kind: cells(those) for kind, those in cases.items()})
@@ -112,14 +110,14 @@ def table(cases: Mapping[str, Sequence[Found]]) -> Table:
 
 def first_table() -> Table:
     """One recording, as a sentinel."""
-    off = found((SEED, DESIGN_MODEL)).off
+    off = identified_car((SEED, DESIGN_MODEL)).off
     columns = (Column("C off", "%", 2, 0.0), Column("phi_B off", "%", 1, 0.0))
     return Table("recorded on", columns, {DESIGN_MODEL: (100.0 * off["C"], 100.0 * off["phi_B"])})
 
 
 def measure() -> Measured:
     cases = [(SEED + n, kind) for kind in (DESIGN_MODEL, VEHICLE, OTHER) for n in range(CARS)]
-    answers = iter(run_many(found, cases, label="one step"))
+    answers = iter(run_many(identified_car, cases, label="one step"))
     by_kind = {kind: [next(answers) for _ in range(CARS)] for kind in (DESIGN_MODEL, VEHICLE, OTHER)}
     return Measured({"first": first_table(), "steps": table(by_kind)})
 

@@ -142,19 +142,19 @@ def judged(case: Case, damped: bool, settings: Settings, follow: bool = True) ->
 def all_judged(drives: Sequence[tuple[Case, bool]]) -> list[Judged]:
     """What is found odd in drives."""
     settings = {plant: built(plant) for plant in PLANTS}
-    return run_many(lambda one: judged(*one, settings[one[0].plant]), drives, label="drives")
+    return run_many(lambda drive: judged(*drive, settings[drive[0].plant]), drives, label="drives")
 
 
-def plants_table(found: Sequence[Judged]) -> Table:
+def plants_table(drives: Sequence[Judged]) -> Table:
     """A row for each plant."""
     rows: dict[str, tuple[Cell, ...]] = {}
     for plant in PLANTS:
-        its = [one for one in found if one.case.plant == plant]
-        balanced = [one.balance for one in its if one.balance.fits]
-        signs = [one.balance.correlation for one in its if one.balance.correlation]
-        ratios = [each.ratio for each in balanced]
-        counts = (len(its), sum(len(one.findings) for one in its), len(balanced))
-        limits = (min(signs), min(ratios), max(ratios), 3.6 * max(one.speed_error for one in its))
+        its = [drive for drive in drives if drive.case.plant == plant]
+        balanced = [drive.balance for drive in its if drive.balance.fits]
+        signs = [drive.balance.correlation for drive in its if drive.balance.correlation]
+        ratios = [balance.ratio for balance in balanced]
+        counts = (len(its), sum(len(drive.findings) for drive in its), len(balanced))
+        limits = (min(signs), min(ratios), max(ratios), 3.6 * max(drive.speed_error for drive in its))
         rows[plant] = (*counts, *limits)
     columns = (
         *(Column(name, decimals=0) for name in ("drives", "findings", "balanced")),
@@ -164,26 +164,27 @@ def plants_table(found: Sequence[Judged]) -> Table:
     return Table("plant", columns, rows)
 
 
-def findings_table(found: Sequence[Judged]) -> Table:
+def findings_table(drives: Sequence[Judged]) -> Table:
     """How many findings single drives have, and how far the plant that follows is off."""
-    rows = {str(one.case): (len(one.findings), 3.6 * one.speed_error) for one in found}
+    rows = {str(drive.case): (len(drive.findings), 3.6 * drive.speed_error) for drive in drives}
     return Table("drive", (Column("findings", decimals=0), Column("speed error", "km/h", 3)), rows)
 
 
-def channels_table(found: Sequence[Judged]) -> Table:
+def channels_table(drives: Sequence[Judged]) -> Table:
     """A row for each quantity: how many channels, at 2 ms, 10 ms and 0.1 s, what is named in them, and how lonely the
     loneliest sample is."""
-    every = [each for one in found for each in one.channels]
+    every = [channel for drive in drives for channel in drive.channels]
     rows: dict[str, tuple[Cell, ...]] = {}
     for quantity in SENSORS.values():
-        its = [each for each in every if each.quantity == quantity]
-        rows[quantity] = (len(its), sum(each.named for each in its), max((each.lone for each in its), default=0.0))
+        its = [channel for channel in every if channel.quantity == quantity]
+        loneliest = max((channel.lone for channel in its), default=0.0)
+        rows[quantity] = (len(its), sum(channel.named for channel in its), loneliest)
     return Table("quantity", (*(Column(name, decimals=0) for name in ("channels", "named")), Column("lone")), rows)
 
 
 def measure() -> Measured:
-    found = all_judged(cases(CASES))
-    tables = {"plants": plants_table(found), "channels": channels_table(found), "drives": findings_table(found)}
+    drives = all_judged(cases(CASES))
+    tables = {"plants": plants_table(drives), "channels": channels_table(drives), "drives": findings_table(drives)}
     return Measured(tables)
 
 

@@ -25,8 +25,8 @@ def tries_table(tries: Mapping[str, int]) -> Table:
     rows: dict[str, tuple[Cell, ...]] = {}
     with ProcessPoolExecutor() as pool:
         every = pool.map(faults, tries, tries.values())
-        for (name, count), found in zip(tries.items(), every, strict=True):
-            rows[TARGETS[name].what] = (TARGETS[name].promise, float(count), float(found))
+        for (name, count), odd in zip(tries.items(), every, strict=True):
+            rows[TARGETS[name].what] = (TARGETS[name].promise, float(count), float(odd))
     columns = (Column("what is promised"), Column("tries", decimals=0), Column("not as promised", decimals=0))
     return Table("input", columns, rows)
 
@@ -42,10 +42,10 @@ def tries_of(name: str) -> int:
 
 def again() -> Mapping[str, Table]:
     """That of a quick target, with the number of its tries as it is kept."""
-    found = tries_table({SENTINEL: FEW})
+    table = tries_table({SENTINEL: FEW})
     row = TARGETS[SENTINEL].what
-    promise, _, answers = found.rows[row]
-    return {"tries": found._replace(rows={row: (promise, float(tries_of(SENTINEL)), answers)})}
+    promise, _, answers = table.rows[row]
+    return {"tries": table._replace(rows={row: (promise, float(tries_of(SENTINEL)), answers)})}
 
 
 STUDY = Study(

@@ -41,8 +41,8 @@ def rides_table(path: Path, plant: str, controllers: Sequence[str] = CONTROLLERS
     loops = built_together(settings(plant, controller=name) for name in controllers)
     load, T_max = car_of(loops[0])
     rides = replay(Track.of(read_drive(path), T_max), load, dict(zip(controllers, loops, strict=True)))
-    found = {ride.controller: ride.metrics for ride in rides}
-    rows = {name: _cells(metrics, found[WITHOUT]) for name, metrics in found.items()}
+    metrics_of = {ride.controller: ride.metrics for ride in rides}
+    rows = {name: _cells(metrics, metrics_of[WITHOUT]) for name, metrics in metrics_of.items()}
     return Table(f"{path.stem} on {plant}", COLUMNS, rows)
 
 

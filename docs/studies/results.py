@@ -45,8 +45,8 @@ def measured(run: Run) -> tuple[Cell, ...]:
 
 def _table(runs: Iterable[Run]) -> Table:
     todo = list(runs)
-    found = zip(map(str, todo), run_many(measured, todo, label="results"), strict=True)
-    return Table("plant, manoeuvre, damping", COLUMNS, dict(found))
+    pairs = zip(map(str, todo), run_many(measured, todo, label="results"), strict=True)
+    return Table("plant, manoeuvre, damping", COLUMNS, dict(pairs))
 
 
 def measure() -> Measured:

@@ -173,8 +173,8 @@ def with_late_signals(what: str, signal: int, late: float, told: Mapping[str, So
     """Signals of motor control come `late` s late from the start or from 1.1 s on."""
     for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
         end = manoeuvre.duration
-        given = {"kind_1": LATE, "signal_1": signal, "begin_1": begin, "end_1": end, "size_1": late}
-        yield Run(f"{what} {1e3 * late:.0f} ms late", manoeuvre, max(1.0, begin + AFTER), {}, begin, given, told)
+        errors = {"kind_1": LATE, "signal_1": signal, "begin_1": begin, "end_1": end, "size_1": late}
+        yield Run(f"{what} {1e3 * late:.0f} ms late", manoeuvre, max(1.0, begin + AFTER), {}, begin, errors, told)
 
 
 def with_wrong_frames() -> Iterator[Run]:
@@ -184,8 +184,8 @@ def with_wrong_frames() -> Iterator[Run]:
     for frequency in (2.0, 4.0, 6.0, 8.0, 10.0, 14.0):
         for what, errors in (("speed off by 7 rad/s", {"e_omega_1": 7.0}), ("torque off by 40 N.m", {"e_T_mot": 40.0})):
             for manoeuvre, begin in product(DRIVES, (0.0, 1.1)):
-                given = {**errors, "begin": begin, "frequency": frequency}
-                yield Run(f"{what}, {frequency:g} Hz", manoeuvre, max(1.0, begin + AFTER), {}, begin, given)
+                injected = {**errors, "begin": begin, "frequency": frequency}
+                yield Run(f"{what}, {frequency:g} Hz", manoeuvre, max(1.0, begin + AFTER), {}, begin, injected)
 
 
 STUDIES = {"grip": on_slippery_roads, "abs": with_abs, "frames": with_wrong_frames}
@@ -195,21 +195,21 @@ INJECTORS = {False: SIGNAL_FAULTS, True: periodic_errors.FMU}
 """What makes the errors of the frame: by whether they are periodic."""
 
 
-def gear_torque(each: Run, settings: Settings, injectors: Mapping[bool, Path]) -> tuple[np.ndarray, float]:
+def gear_torque(case: Run, settings: Settings, injectors: Mapping[bool, Path]) -> tuple[np.ndarray, float]:
     """In N.m at the samples that count, and the time in fallback in s."""
-    system = with_faults(loop(settings), injectors["frequency" in each.errors])
-    parameters = start(each.manoeuvre, each.seed) | dict(settings.parameters)
-    parameters |= {f"plant.{name}": value for name, value in each.plant.items()}
-    parameters |= {f"faults.{name}": value for name, value in each.errors.items()}
-    inputs = {**signals(each.manoeuvre, settings.control, settings.step_size), **each.told}
-    rows = at_samples(run(system, Experiment(each.manoeuvre.duration, inputs=inputs, parameters=parameters)))
+    system = with_faults(loop(settings), injectors["frequency" in case.errors])
+    parameters = start(case.manoeuvre, case.seed) | dict(settings.parameters)
+    parameters |= {f"plant.{name}": value for name, value in case.plant.items()}
+    parameters |= {f"faults.{name}": value for name, value in case.errors.items()}
+    inputs = {**signals(case.manoeuvre, settings.control, settings.step_size), **case.told}
+    rows = at_samples(run(system, Experiment(case.manoeuvre.duration, inputs=inputs, parameters=parameters)))
     fallback = T_S * float(np.count_nonzero(rows["controller.status"] == FALLBACK))
-    return rows["plant.T_gear"][rows["time"] >= each.seen_from], fallback
+    return rows["plant.T_gear"][rows["time"] >= case.seen_from], fallback
 
 
-def ratios(each: Run, settings: Settings, injectors: Mapping[bool, Path]) -> Ratios:
-    off, _ = gear_torque(each, settings.replace(control=False), injectors)
-    on, fallback = gear_torque(each, settings, injectors)
+def ratios(case: Run, settings: Settings, injectors: Mapping[bool, Path]) -> Ratios:
+    off, _ = gear_torque(case, settings.replace(control=False), injectors)
+    on, fallback = gear_torque(case, settings, injectors)
     return Ratios(
         peak=float(np.abs(on).max() / max(np.abs(off).max(), QUIET_PEAK)),
         rms=band_rms(on, T_S) / max(band_rms(off, T_S), QUIET_RMS),
@@ -247,11 +247,11 @@ def late(rms: np.ndarray) -> int:
     return int(np.count_nonzero(rms > MOST_LATE))
 
 
-def by_group(runs: Sequence[Run], found: Sequence[Ratios]) -> dict[str, list[tuple[Run, Ratios]]]:
+def by_group(runs: Sequence[Run], answers: Sequence[Ratios]) -> dict[str, list[tuple[Run, Ratios]]]:
     """The runs with their ratios, by their groups, in the order of the first run of each."""
     groups: dict[str, list[tuple[Run, Ratios]]] = {}
-    for each, y in zip(runs, found, strict=True):
-        groups.setdefault(each.group, []).append((each, y))
+    for a_run, y in zip(runs, answers, strict=True):
+        groups.setdefault(a_run.group, []).append((a_run, y))
     return groups
 
 
@@ -261,42 +261,42 @@ DRIFTS = (0.55, 0.7)
 CONTROLLERS = (OURS, *(name for name in COMPARATORS if name != "NoDamping"))
 
 
-def controllers_table(found: Mapping[tuple[str, str], Sequence[Ratios]]) -> Table:
+def controllers_table(answers: Mapping[tuple[str, str], Sequence[Ratios]]) -> Table:
     """Every controller on roads without grip and under ABS."""
-    rows = {f"{study}, {name}": numbers(of) for (study, name), of in found.items() if study != "frames"}
+    rows = {f"{study}, {name}": numbers(of) for (study, name), of in answers.items() if study != "frames"}
     return Table("runs, controller", (*NUMBERS, *OVER), rows)
 
 
-def groups_table(runs: Sequence[Run], found: Sequence[Ratios]) -> Table:
+def groups_table(runs: Sequence[Run], answers: Sequence[Ratios]) -> Table:
     """A row for each group of runs with ours."""
-    rows = {group: (len(of), *numbers([y for _, y in of])) for group, of in by_group(runs, found).items()}
+    rows = {group: (len(of), *numbers([y for _, y in of])) for group, of in by_group(runs, answers).items()}
     return Table("runs", (Column("count", decimals=0), *NUMBERS, *OVER), rows)
 
 
-def frames_table(runs: Sequence[Run], found: Mapping[str, Sequence[Ratios]]) -> Table:
+def frames_table(runs: Sequence[Run], answers: Mapping[str, Sequence[Ratios]]) -> Table:
     """For frames that are late or wrong the rms of each controller: worst, mean, and how many are beyond MOST_LATE."""
     rows: dict[str, tuple[Cell, ...]] = {}
-    grouped = [by_group(runs, of) for of in found.values()]
+    grouped = [by_group(runs, of) for of in answers.values()]
     for group in grouped[0]:
-        each = (np.array([y.rms for _, y in of[group]]) for of in grouped)
-        rows[group] = tuple(f"{rms.max():.2f} / {rms.mean():.2f} / {late(rms)}" for rms in each)
-    return Table("frame", tuple(map(Column, found)), rows)
+        rms_of = (np.array([y.rms for _, y in of[group]]) for of in grouped)
+        rows[group] = tuple(f"{rms.max():.2f} / {rms.mean():.2f} / {late(rms)}" for rms in rms_of)
+    return Table("frame", tuple(map(Column, answers)), rows)
 
 
-def runs_table(runs: Sequence[Run], found: Sequence[Ratios]) -> Table:
+def runs_table(runs: Sequence[Run], answers: Sequence[Ratios]) -> Table:
     """Single runs with ours."""
-    rows = {f"{each.group}: {each}": tuple(map(float, y)) for each, y in zip(runs, found, strict=True)}
+    rows = {f"{run.group}: {run}": tuple(map(float, y)) for run, y in zip(runs, answers, strict=True)}
     return Table("run", (Column("peak"), Column("rms"), Column("fallback", "s")), rows)
 
 
 def sentinels() -> list[Run]:
     """One run of each kind."""
-    return [next(iter(made())) for made in STUDIES.values()]
+    return [next(iter(runs_of())) for runs_of in STUDIES.values()]
 
 
 def measure() -> Measured:
-    runs = {study: list(made()) for study, made in STUDIES.items()}
-    found = {
+    runs = {study: list(runs_of()) for study, runs_of in STUDIES.items()}
+    answers = {
         (study, controller): measured(runs[study], controller, f"{controller}, {study}")
         for study, controller in product(STUDIES, CONTROLLERS)
     }
@@ -309,11 +309,11 @@ def measure() -> Measured:
     slippery = [*runs["grip"], *runs["abs"]]
     return Measured(
         {
-            "controllers": controllers_table(found),
+            "controllers": controllers_table(answers),
             "drifts": Table("grip", (*NUMBERS, *OVER), drifts),
-            "groups": groups_table(slippery, [*found["grip", OURS], *found["abs", OURS]]),
-            "frames": frames_table(runs["frames"], {name: found["frames", name] for name in CONTROLLERS}),
-            "runs": runs_table(slippery, [*found["grip", OURS], *found["abs", OURS]])._replace(note="With ours."),
+            "groups": groups_table(slippery, [*answers["grip", OURS], *answers["abs", OURS]]),
+            "frames": frames_table(runs["frames"], {name: answers["frames", name] for name in CONTROLLERS}),
+            "runs": runs_table(slippery, [*answers["grip", OURS], *answers["abs", OURS]])._replace(note="With ours."),
             "late": runs_table(sentinels()[2:], measured(sentinels()[2:], OURS, "frames")),
         }
     )
@@ -321,8 +321,8 @@ def measure() -> Measured:
 
 def again() -> dict[str, Table]:
     runs = sentinels()
-    found = measured(runs, OURS, "roads")
-    return {"runs": runs_table(runs[:2], found[:2]), "late": runs_table(runs[2:], found[2:])}
+    answers = measured(runs, OURS, "roads")
+    return {"runs": runs_table(runs[:2], answers[:2]), "late": runs_table(runs[2:], answers[2:])}
 
 
 def explore(arguments: Sequence[str]) -> None:
@@ -339,14 +339,14 @@ def explore(arguments: Sequence[str]) -> None:
         show(f"{controller}: {study}", groups_table(runs, measured(runs, controller, study)))
 
 
-NAMES = [f"{each.group}: {each}" for each in sentinels()]
+NAMES = [f"{run.group}: {run}" for run in sentinels()]
 
 STUDY = Study(
     "roads without grip, ABS, and frames that are late or wrong",
     measure,
     again,
     {
-        "runs": [f"{each.group}: {each}" for each in sentinels()[:2]],
+        "runs": [f"{run.group}: {run}" for run in sentinels()[:2]],
         "late": [f"{r.group}: {r}" for r in sentinels()[2:]],
     },
     explore=explore,

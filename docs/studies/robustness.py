@@ -44,13 +44,13 @@ def runner(controllers: Sequence[str]) -> CaseRunner:
     return CaseRunner(dict(zip(pairs, loops, strict=True)), SEED)
 
 
-def summary_table(found: Sequence[Summary]) -> Table:
+def summary_table(summaries: Sequence[Summary]) -> Table:
     """A row for each controller: shares of the runs, and what half and 95 % of them do not exceed."""
     rows: dict[str, tuple[Cell, ...]] = {}
-    for each in found:
-        levels = ((each.level(name, level) * of.factor) for name, of in LISTED.items() for level in LEVELS)
-        shares = (100.0 * each.share(verdict) for verdict in ("stable", "good"))
-        rows[each.controller] = (*shares, *(None if isinf(value) else value for value in levels))
+    for summary in summaries:
+        levels = ((summary.level(name, level) * of.factor) for name, of in LISTED.items() for level in LEVELS)
+        shares = (100.0 * summary.share(verdict) for verdict in ("stable", "good"))
+        rows[summary.controller] = (*shares, *(None if isinf(value) else value for value in levels))
     return Table("controller", COLUMNS, rows)
 
 
@@ -58,18 +58,18 @@ def draws_table(outcomes: Sequence[Outcome]) -> Table:
     """Single draws."""
     columns = tuple(Column(of.plain_heading, of.unit, of.decimals) for of in SHOWN.values())
     rows: dict[str, tuple[Cell, ...]] = {}
-    for each in outcomes:
-        values = (each.magnitude(name) * of.factor for name, of in SHOWN.items())
-        rows[str(each.case)] = tuple(None if value == inf else value for value in values)
+    for outcome in outcomes:
+        values = (outcome.magnitude(name) * of.factor for name, of in SHOWN.items())
+        rows[str(outcome.case)] = tuple(None if value == inf else value for value in values)
     return Table("draw", columns, rows)
 
 
-def distribution(found: Sequence[Summary]) -> Drawing:
+def distribution(summaries: Sequence[Summary]) -> Drawing:
     """Which share of the draws of a tip-in stays below a value, for each controller; a column for each plant."""
     columns = [
         [_thinner(panel) for panel in distributions(of, plant)]
         for plant in PLANTS
-        if (of := [each for each in found if (each.plant, each.manoeuvre) == (plant, DRAWN)])
+        if (of := [summary for summary in summaries if (summary.plant, summary.manoeuvre) == (plant, DRAWN)])
     ]
     title = f"{DRAWN}: share of {DRAWS} draws that stay below a value"
     return Drawing(list(zip(*columns, strict=True)), Axis("", (0.0, 1.0)), title, (7.2, 1.95), key=4)
@@ -83,13 +83,13 @@ def _thinner(panel: Panel) -> Panel:
 
 def measure() -> Measured:
     outcomes = campaign(runner(CONTROLLERS), range(1, DRAWS + 1))
-    found = summaries(outcomes)
+    of_loops = summaries(outcomes)
     tables = {
-        f"{plant}_{manoeuvre}": summary_table([s for s in found if (s.plant, s.manoeuvre) == (plant, manoeuvre)])
-        for plant, manoeuvre in dict.fromkeys((s.plant, s.manoeuvre) for s in found)
+        f"{plant}_{manoeuvre}": summary_table([s for s in of_loops if (s.plant, s.manoeuvre) == (plant, manoeuvre)])
+        for plant, manoeuvre in dict.fromkeys((s.plant, s.manoeuvre) for s in of_loops)
     }
-    first = [each for each in outcomes if each.case.number == 1 and each.case.controller == OURS]
-    return Measured({**tables, "draws": draws_table(first)}, {"distribution": distribution(found)})
+    first = [outcome for outcome in outcomes if outcome.case.number == 1 and outcome.case.controller == OURS]
+    return Measured({**tables, "draws": draws_table(first)}, {"distribution": distribution(of_loops)})
 
 
 def again() -> dict[str, Table]:

@@ -51,10 +51,10 @@ CRUISING = replace(STEADY, v_0=10.0, T_driver=lines((0.0, 10.0)))
 Cost = tuple[float, ...]
 
 
-def alone(function: Callable[..., Any], *given: Any) -> Any:
+def alone(function: Callable[..., Any], *arguments: Any) -> Any:
     """What a function returns in a process of its own."""
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        return pool.submit(function, *given).result()
+        return pool.submit(function, *arguments).result()
 
 
 def in_turns(
@@ -104,7 +104,7 @@ def instructions_table() -> Table:
     """Of a step; they do not depend on what else the machine does."""
     counts = {plant: instructions.steps_of(plant) for plant in PLANTS}
     parts = tuple(Column(part, decimals=0) for part in next(iter(counts.values())))
-    return Table("plant", parts, {plant: tuple(found.values()) for plant, found in counts.items()})
+    return Table("plant", parts, {plant: tuple(count.values()) for plant, count in counts.items()})
 
 
 def growth(least: Mapping[tuple[Any, ...], Cost], case: str, columns: Sequence[Column]) -> Table:
@@ -154,7 +154,7 @@ def measured(turns: int, duration: float) -> Measured:
     hosts.find_libraries()
     best = {plant: hosts.measure(plant, round(duration / STEP_SIZE), turns) for plant in PLANTS}
     speeds = in_turns(turns, at_speed, [(plant, v, duration) for plant in PLANTS for v in SPEEDS])
-    lengths = in_turns(turns, of_length, [(plant, each) for plant in PLANTS for each in LENGTHS])
+    lengths = in_turns(turns, of_length, [(plant, length) for plant in PLANTS for length in LENGTHS])
     step = Column("a step", "µs", 2)
     tables = {
         "steps": hosts_table(best),

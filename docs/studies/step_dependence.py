@@ -28,7 +28,7 @@ class Case(NamedTuple):
 
 
 CASES = tuple(
-    Case(plant, each.name, control) for plant in PLANTS for each in USUAL_MANOEUVRES for control in (False, True)
+    Case(plant, course.name, control) for plant in PLANTS for course in USUAL_MANOEUVRES for control in (False, True)
 )
 
 
@@ -37,16 +37,16 @@ def deviations(coarse: Metrics, fine: Metrics) -> dict[str, float]:
 
     A sample earlier or later is no deviation; a metric that only one of the runs has deviates without bound.
     """
-    found = {}
+    shares = {}
     for metric in declared(Metrics):
         if metric.name in coarse.absent and metric.name in fine.absent:
             continue
         away, value = abs(metric.of(coarse) - metric.of(fine)), abs(metric.of(fine))
         if away == 0.0 or (metric.name in INSTANTS and away < 1.01 * T_S):
-            found[metric.name] = 0.0
+            shares[metric.name] = 0.0
         else:
-            found[metric.name] = away / value if value > 0.0 and away < inf else inf
-    return found
+            shares[metric.name] = away / value if value > 0.0 and away < inf else inf
+    return shares
 
 
 def deviations_of(case: Case, folder: Path = BUILD, steps: Sequence[float] = STEPS) -> dict[str, float]:

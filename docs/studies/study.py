@@ -184,8 +184,8 @@ def differences(was: Mapping[str, Table], now: Mapping[str, Table]) -> Iterator[
     """
     for name, table in now.items():
         before = was.get(name)
-        if before is None or [each.name for each in before.columns] != [each.name for each in table.columns]:
-            had, has = (", ".join(each.name for each in of.columns) if of else "none" for of in (before, table))
+        if before is None or [column.name for column in before.columns] != [column.name for column in table.columns]:
+            had, has = (", ".join(column.name for column in of.columns) if of else "none" for of in (before, table))
             yield Difference(name, "all", "columns", had, has, "none")
             continue
         for row, cells in table.rows.items():

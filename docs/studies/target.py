@@ -55,12 +55,12 @@ PARTS = (Column("instructions", "", 0), Column("flash", "B", 0))
 COSTS = (Column("is", "", 0),)
 
 
-def cases_table(found: Iterable[Comparison]) -> Table:
+def cases_table(comparisons: Iterable[Comparison]) -> Table:
     """Off-line, the same inputs on the target and here."""
     rows: dict[str, tuple[Cell, ...]] = {}
-    for each in found:
-        off = (each.samples, each.differing, each.T_ref, each.T_gear_hat, 1e2 * each.margin, each.largest)
-        rows[each.case.name] = (*off, *each.instructions)
+    for of in comparisons:
+        off = (of.samples, of.differing, of.T_ref, of.T_gear_hat, 1e2 * of.margin, of.largest)
+        rows[of.case.name] = (*off, *of.instructions)
     return Table("case", CASES, rows)
 
 
@@ -70,15 +70,15 @@ def sizes(size: Size) -> dict[str, tuple[Cell, ...]]:
     return {**whole, "of the C library": (", ".join(size.library),)}
 
 
-def costs_table(found: Record, told: Mapping[str, Mapping[str, Any]]) -> Table:
+def costs_table(target_record: Record, told: Mapping[str, Mapping[str, Any]]) -> Table:
     """What the controller takes."""
     rows: dict[str, tuple[Cell, ...]] = {
         "instructions in a drive, most": (told["costs"]["driven"],),
         "instructions of what is drawn, most": (told["costs"]["drawn"],),
         "stack that is used, B": (told["costs"]["stack_used"],),
-        **sizes(found.size),
+        **sizes(target_record.size),
         **{f"under the timer: {name}": (value,) for name, value in told["schedule"].items()},
-        "samples in all": (sum(each.samples for each in found.comparisons),),
+        "samples in all": (sum(comparison.samples for comparison in target_record.comparisons),),
     }
     return Table("what", COSTS, rows)
 
@@ -87,43 +87,43 @@ def parts_table(typical: Comparison, size: Size) -> Table:
     """What controllers take."""
     rows: dict[str, tuple[Cell, ...]] = {}
     for name in LESS:
-        with programs(CONTROLLERS[name]) as made:
-            most = max(answer.count for answer in responses(made.target(), typical.case)[1:])
-            rows[name] = most, size_of(made).flash
+        with programs(CONTROLLERS[name]) as binaries:
+            most = max(answer.count for answer in responses(binaries.target(), typical.case)[1:])
+            rows[name] = most, size_of(binaries).flash
     rows[OURS] = typical.instructions[1], size.flash
     return Table("controller", PARTS, rows, f"Most instructions of a sample in {TYPICAL}.")
 
 
 def deviations_table() -> Table:
     """The rules that are not kept, and why."""
-    found = findings(target_sources(CONTROLLERS[OURS], SINGLE))
-    counts = Counter((each.rule, each.file, reason(each)) for each in found)
+    deviations = findings(target_sources(CONTROLLERS[OURS], SINGLE))
+    counts = Counter((deviation.rule, deviation.file, reason(deviation)) for deviation in deviations)
     rows: dict[str, tuple[Cell, ...]] = {f"{rule} {file}": (n, why) for (rule, file, why), n in sorted(counts.items())}
     return Table("rule, file", (Column("found", "", 0), Column("why")), rows)
 
 
-def torques(found: Comparison) -> Drawing:
+def torques(comparison: Comparison) -> Drawing:
     """The torque reference on the target and of the model, and their distance."""
-    target, model = found.traces
+    target, model = comparison.traces
     time = T_S * np.arange(len(target))
     both = [Curve(time, model, "double precision", BLACK), Curve(time, target, "target", BLUE, DASHED)]
     less = [Curve(time, target - model, "", VERMILION)]
     rows = [[Panel("T_ref in N·m", both)], [Panel("target less\nmodel in N·m", less)]]
-    title = f"{found.case.name}: the C on the target, and the model"
+    title = f"{comparison.case.name}: the C on the target, and the model"
     return Drawing(rows, Axis("time in s", (0.0, float(time[-1]))), title)
 
 
 def measure() -> Measured:
-    found = record(Settings())
-    told = numbers(found)
+    target_record = record(Settings())
+    told = numbers(target_record)
     loops = {name: tuple(of.values()) for name, of in told["loops"].items()}
-    typical = next(each for each in found.comparisons if each.case.name == TYPICAL)
+    typical = next(comparison for comparison in target_record.comparisons if comparison.case.name == TYPICAL)
     return Measured(
         {
-            "cases": cases_table(found.comparisons),
+            "cases": cases_table(target_record.comparisons),
             "loops": Table("manoeuvre", LOOPS, loops),
-            "parts": parts_table(typical, found.size),
-            "costs": costs_table(found, told),
+            "parts": parts_table(typical, target_record.size),
+            "costs": costs_table(target_record, told),
             "deviations": deviations_table(),
         },
         {"torques": torques(typical)},
@@ -138,9 +138,9 @@ def again() -> dict[str, Table]:
     system = loop(settings)
     own = fit(system).interfaces["controller"]
     inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
-    with programs(CONTROLLERS[OURS]) as made:
-        compared = compare(made, recorded(MANOEUVRES[SENTINEL], system, inputs, settings), outputs)
-        size = size_of(made)
+    with programs(CONTROLLERS[OURS]) as binaries:
+        compared = compare(binaries, recorded(MANOEUVRES[SENTINEL], system, inputs, settings), outputs)
+        size = size_of(binaries)
     return {"cases": cases_table([compared]), "costs": Table("what", COSTS, sizes(size))}
 
 

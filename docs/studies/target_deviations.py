@@ -85,7 +85,7 @@ def findings(sources: Mapping[str, str]) -> list[Finding]:
     require_packages(CHECKER)
     with TemporaryDirectory(prefix="driveline-") as temporary:
         folder = Path(temporary)
-        found = [
+        places = [
             (rule, *place)
             for program in (LINK, SCHEDULER)
             for names in [written(sources, (program, *BOARD), folder)]
@@ -93,13 +93,13 @@ def findings(sources: Mapping[str, str]) -> list[Finding]:
         ]
     return [
         Finding(rule, GENERATED if file in sources else file, f"{file}:{line}")
-        for rule, file, line in dict.fromkeys(found)
+        for rule, file, line in dict.fromkeys(places)
     ]
 
 
 def reason(finding: Finding) -> str | None:
     """Why it stays, if that is written."""
-    reasons = (each.reason for each in DEVIATIONS if each.rule == finding.rule and finding.file in each.files)
+    reasons = (kept.reason for kept in DEVIATIONS if kept.rule == finding.rule and finding.file in kept.files)
     return next(reasons, None)
 
 

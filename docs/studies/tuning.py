@@ -41,7 +41,7 @@ def _cost(costs: Costs, character: float = 0.5) -> tuple[Cell, ...]:
 
 def choices_table(visited: Sequence[Evaluated], where: Space) -> Table:
     """The start and the choices: what they cost, and their parameters."""
-    columns = (*COSTS, *(Column(each.name) for each in where.searched))
+    columns = (*COSTS, *(Column(parameter.name) for parameter in where.searched))
     rows = {"start": (*_cost(visited[0].costs), *visited[0].values)}
     for name, character in CHARACTERS.items():
         chosen = best(visited, character)
@@ -53,10 +53,11 @@ def defaults_table(controllers: Iterable[str], runs: Sequence[Run]) -> Table:
     """What controllers cost with their defaults."""
     rows: dict[str, tuple[Cell, ...]] = {}
     for name in controllers:
-        parameters = {each.name: float(declared_parameters(name)[each.name].start) for each in space(name, {}).searched}
+        declared = declared_parameters(name)
+        parameters = {p.name: float(declared[p.name].start) for p in space(name, {}).searched}
         with CostEvaluation(Settings(controller=name), runs=runs).opened() as costs_of:
-            (found,) = costs_of([parameters])
-        rows[name] = (len(parameters), *_cost(found))
+            (costs,) = costs_of([parameters])
+        rows[name] = (len(parameters), *_cost(costs))
     return Table("controller", (Column("parameters searched", "", 0), *COSTS), rows)
 
 

@@ -45,9 +45,9 @@ def _run(row: tuple[Mapping[str, Any], bool]) -> Results:
 
 
 def _table(rows: Mapping[str, tuple[Mapping[str, Any], bool]]) -> Table:
-    found = zip(rows.values(), run_many(_run, rows.values(), label="tutorial"), strict=True)
+    runs = zip(rows.values(), run_many(_run, rows.values(), label="tutorial"), strict=True)
     cells = (
-        metrics_cells(evaluate(results, for_car(TIPIN, given_torque(parameters)))) for (parameters, _), results in found
+        metrics_cells(evaluate(results, for_car(TIPIN, given_torque(parameters)))) for (parameters, _), results in runs
     )
     return Table("tip-in", COLUMNS, dict(zip(rows, cells, strict=True)))
 

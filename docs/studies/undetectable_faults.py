@@ -76,8 +76,8 @@ def swing(plant: str, manoeuvre: str, fault: str | None) -> tuple[float, float]:
         return float(course.T_driver(t)), float(course.T_brake(t)), float(course.slope(t))
 
     start = {"plant": {"v_0": course.v_0, "T_0": course.T_0}}
-    given = (received(fault),) if fault else ()
-    y = monolithic.run(monolithic.PLANTS[plant], signals, course.duration, start, fault is not None, *given)
+    arguments = (received(fault),) if fault else ()
+    y = monolithic.run(monolithic.PLANTS[plant], signals, course.duration, start, fault is not None, *arguments)
     rms = band_rms(y["plant.T_gear"], monolithic.INTERVAL)
     return rms, float(np.mean(y["controller.status"] == FALLBACK))
 

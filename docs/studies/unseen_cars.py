@@ -52,11 +52,11 @@ class Trial(NamedTuple):
 
 def drawn_cars() -> dict[str, dict[str, float]]:
     """By name, with the largest torque of the motor."""
-    random, found = Random(SEED), {}
+    random, cars = Random(SEED), {}
     for k in range(1, CARS + 1):
         car = drawn(random)
-        found[f"car {k}"] = {**car, "T_max": random.uniform(2.0, 4.0) * car["m"] * car["r"] / car["i"]}
-    return found
+        cars[f"car {k}"] = {**car, "T_max": random.uniform(2.0, 4.0) * car["m"] * car["r"] / car["i"]}
+    return cars
 
 
 UNSEEN = drawn_cars()
@@ -67,7 +67,7 @@ def gains(car: Car, choice: str) -> Car:
     designed = design(car)
     if choice != WASHOUT:
         return designed | (dict.fromkeys(("shape_1", "shape_2"), 0.0) if choice == UNSHAPED else {})
-    usual, own = (2.0 * pi * frequencies(each).design for each in ({}, car))
+    usual, own = (2.0 * pi * frequencies(entries).design for entries in ({}, car))
     of = WashoutParameters()
     inertia = car["J_1"] / CAR.J_1
     scaled = {"k_v": of.k_v * inertia * own / usual, "omega_v": of.omega_v * own / usual}
@@ -78,9 +78,9 @@ def measured(trial: Trial) -> Metrics:
     """Means over the noise of three seeds."""
     car = UNSEEN[trial.car]
     controller = WASHOUT if trial.choice == WASHOUT else OURS
-    given = loop_parameters({**car, **gains(car, trial.choice)}, trial.plant, controller)
+    parameters = loop_parameters({**car, **gains(car, trial.choice)}, trial.plant, controller)
     manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], car["T_max"])
-    its = Settings(plant=trial.plant, controller=controller, control=trial.choice != NONE, parameters=given)
+    its = Settings(plant=trial.plant, controller=controller, control=trial.choice != NONE, parameters=parameters)
     return mean([evaluate(simulate(manoeuvre, its, seed=seed), manoeuvre) for seed in NOISE])
 
 
@@ -113,37 +113,37 @@ Found = Mapping[tuple[str, str, str], Shown]
 
 def shown(names: Iterable[str], plants: Iterable[str] = PLANTS) -> dict[tuple[str, str, str], Shown]:
     """Of cars by their names."""
-    todo = [Trial(*each) for each in product(names, plants, CHOICES, STEPS)]
+    todo = [Trial(*combination) for combination in product(names, plants, CHOICES, STEPS)]
     of = dict(zip(todo, run_many(measured, todo, label="unseen cars"), strict=True))
-    found: dict[tuple[str, str, str], Shown] = {}
+    by_key: dict[tuple[str, str, str], Shown] = {}
     for name, plant, choice in dict.fromkeys(trial[:3] for trial in todo):
         its = [of[Trial(name, plant, choice, manoeuvre)] for manoeuvre in STEPS]
         off = [of[Trial(name, plant, NONE, manoeuvre)] for manoeuvre in STEPS]
-        found[name, plant, choice] = Shown(
-            overshoot=1e2 * average(each.overshoot for each in its),
-            withheld=1e3 * average(each.withheld_time for each in its),
+        by_key[name, plant, choice] = Shown(
+            overshoot=1e2 * average(metrics.overshoot for metrics in its),
+            withheld=1e3 * average(metrics.withheld_time for metrics in its),
             delay=1e3 * average(a.response_delay - b.response_delay for a, b in zip(its, off, strict=True)),
             jerk=average(a.jerk_rms_to_50_Hz / b.jerk_rms_to_50_Hz for a, b in zip(its, off, strict=True)),
         )
-    return found
+    return by_key
 
 
 def average(values: Iterable[float]) -> float:
     return float(np.mean(list(values)))
 
 
-def cars_table(found: Found) -> Table:
-    rows = {", ".join(key): tuple(map(cell, each)) for key, each in found.items()}
+def cars_table(by_key: Found) -> Table:
+    rows = {", ".join(key): tuple(map(cell, numbers)) for key, numbers in by_key.items()}
     return Table("car, plant, controller", COLUMNS, rows)
 
 
-def means_table(found: Found) -> Table:
+def means_table(by_key: Found) -> Table:
     """Over the cars, and the worst overshoot of one."""
     columns = (Column("worst overshoot", "%", 1), *COLUMNS)
     rows: dict[str, tuple[Cell, ...]] = {}
     for plant, choice in product(PLANTS, CHOICES):
-        of = [each for key, each in found.items() if key[1:] == (plant, choice)]
-        rows[f"{plant}, {choice}"] = (max(each.overshoot for each in of), *map(average, zip(*of, strict=True)))
+        of = [numbers for key, numbers in by_key.items() if key[1:] == (plant, choice)]
+        rows[f"{plant}, {choice}"] = (max(numbers.overshoot for numbers in of), *map(average, zip(*of, strict=True)))
     return Table("plant, controller", columns, rows)
 
 
@@ -152,13 +152,13 @@ DRAWN = ("m", "r", "i", "J_1", "J_2", "C", "phi_B", "c_slip", "T_max")
 
 def drawn_table() -> Table:
     """The cars, in the units of a vehicle file, and the frequency of their drive trains in the design model."""
-    rows = {name: (frequencies(car).design, *(car[each] for each in DRAWN)) for name, car in UNSEEN.items()}
+    rows = {name: (frequencies(car).design, *(car[entry] for entry in DRAWN)) for name, car in UNSEEN.items()}
     return Table("car", (Column("drive train", "Hz", 1), *map(Column, DRAWN)), rows)
 
 
 def measure() -> Measured:
-    found = shown(UNSEEN)
-    return Measured({"means": means_table(found), "cars": cars_table(found), "drawn": drawn_table()})
+    by_key = shown(UNSEEN)
+    return Measured({"means": means_table(by_key), "cars": cars_table(by_key), "drawn": drawn_table()})
 
 
 SENTINEL = "car 1"
@@ -172,7 +172,7 @@ STUDY = Study(
     "what the damping is worth on cars that no search has seen",
     measure,
     again,
-    {"cars": [", ".join((SENTINEL, *each)) for each in product(PLANTS[:1], CHOICES)]},
+    {"cars": [", ".join((SENTINEL, *combination)) for combination in product(PLANTS[:1], CHOICES)]},
     (SEED, *NOISE),
     seconds=60,
 )

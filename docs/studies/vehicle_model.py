@@ -52,8 +52,8 @@ def measured(run: Run) -> Metrics:
 def effects_table(runs: Iterable[Run]) -> Table:
     """The metrics of runs."""
     todo = list(runs)
-    found = zip(todo, run_many(measured, todo, label="effects"), strict=True)
-    return Table("set, damping", COLUMNS, {str(run): metrics_cells(metrics) for run, metrics in found})
+    pairs = zip(todo, run_many(measured, todo, label="effects"), strict=True)
+    return Table("set, damping", COLUMNS, {str(run): metrics_cells(metrics) for run, metrics in pairs})
 
 
 def measure() -> Measured:

@@ -79,13 +79,13 @@ def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:
         NotPossible: there is something to build, and it is not possible here.
         BuildError: start values that one was built with are refused by what it is now.
     """
-    made: list[Path] = []
+    paths: list[Path] = []
     for name in names:
         if is_stale(path := located(name, folder, build)):
             from ..catalogue import EVERY  # what is up to date is found to be so without
 
-            made += rebuilt(EVERY[name], path, folder, build)
-    return made
+            paths += rebuilt(EVERY[name], path, folder, build)
+    return paths
 
 
 def rebuilt(fmu: Fmu, path: Path, folder: Path, build: str) -> list[Path]:
@@ -96,8 +96,8 @@ def rebuilt(fmu: Fmu, path: Path, folder: Path, build: str) -> list[Path]:
     """
     origin = origin_of(path)
     platform = "all" if build == "native" and blocks.is_for_all(path) else "host"
-    made = _as_built(fmu, origin.start_values, path) if origin else fmu
-    return [builder(made, folder) for builder in blocks.builders(build, platform)]
+    as_built = _as_built(fmu, origin.start_values, path) if origin else fmu
+    return [builder(as_built, folder) for builder in blocks.builders(build, platform)]
 
 
 def _as_built(fmu: Fmu, start_values: Mapping[str, Any], path: Path) -> Fmu:

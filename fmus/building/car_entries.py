@@ -85,9 +85,9 @@ def car_entries(entries: Mapping[str, Any] | None) -> list[Entry]:
     entries = of_vehicle(entries)
     full = of_one_car(entries, FOLLOW)
     order = (SET, FOLLOWS, ESTIMATED, DEFAULT)
-    declared = {**{name: (each, ()) for name, each in MEASURED.items() if name in entries}, **_declared()}
-    found = [_entry(name, variable, blocks, entries, full) for name, (variable, blocks) in declared.items()]
-    return sorted(found, key=lambda entry: order.index(entry.origin))
+    declared = {**{name: (variable, ()) for name, variable in MEASURED.items() if name in entries}, **_declared()}
+    rows = [_entry(name, variable, blocks, entries, full) for name, (variable, blocks) in declared.items()]
+    return sorted(rows, key=lambda entry: order.index(entry.origin))
 
 
 def template() -> str:
@@ -134,8 +134,8 @@ Declared = dict[str, tuple[Variable, tuple[str, ...]]]
 
 def _declared() -> Declared:
     """The entries of a car: the parameters of plants, motor and bus."""
-    found = declarations(FMUS.values())
-    return {name: (found[name][0][1], tuple(fmu for fmu, _ in found[name])) for name in car_names()}
+    owners = declarations(FMUS.values())
+    return {name: (owners[name][0][1], tuple(fmu for fmu, _ in owners[name])) for name in car_names()}
 
 
 def _entry(

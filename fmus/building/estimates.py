@@ -37,28 +37,28 @@ DECIDE = (*LAWS, "tau")
 """What decides how good the damping is and stands in no data sheet."""
 
 
-def law(name: str, given: Mapping[str, float]) -> dict[str, float]:
+def law(name: str, known: Mapping[str, float]) -> dict[str, float]:
     """Exponents of the entries of a car from which one of LAWS follows; empty: of none that is given."""
     powers = LAWS[name]
-    if "F_z0" in powers and "F_z0" not in given:  # which follows from the mass itself
+    if "F_z0" in powers and "F_z0" not in known:  # which follows from the mass itself
         powers = {"m": 1.0}
-    return {source: power for source, power in powers.items() if source in given}
+    return {source: power for source, power in powers.items() if source in known}
 
 
-def estimated(given: Mapping[str, float]) -> dict[str, float]:
+def estimated(known: Mapping[str, float]) -> dict[str, float]:
     """The entries of LAWS that are not given, where something is that they follow from.
 
     Args:
         given: entries of a car in SI units.
     """
     usual = {"F_z0": Parameters().F_z0, **CAR._asdict()}
-    found: dict[str, float] = {}
-    if "F_z0" not in given and usual["F_z0"] * given.get("m", 0.0) / usual["m"] > HEAVIEST:
-        given = {**given, "F_z0": HEAVIEST}
-        found["F_z0"] = HEAVIEST
+    estimates: dict[str, float] = {}
+    if "F_z0" not in known and usual["F_z0"] * known.get("m", 0.0) / usual["m"] > HEAVIEST:
+        known = {**known, "F_z0": HEAVIEST}
+        estimates["F_z0"] = HEAVIEST
     for name in LAWS:
-        if name not in given and (powers := law(name, given)):
-            found[name] = usual[name]
+        if name not in known and (powers := law(name, known)):
+            estimates[name] = usual[name]
             for source, power in powers.items():
-                found[name] *= (given[source] / usual[source]) ** power
-    return found
+                estimates[name] *= (known[source] / usual[source]) ** power
+    return estimates

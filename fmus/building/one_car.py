@@ -73,7 +73,7 @@ class Measured(NamedTuple):
     gap: Annotated[float, Real("rad", "at the wheel from flank to flank, in the place of phi_B", 0.0, 0.2)]
 
 
-MEASURED = {each.name: Variable(-1, each.name, "parameter", each.declaration, None) for each in variables(Measured)}
+MEASURED = {q.name: Variable(-1, q.name, "parameter", q.declaration, None) for q in variables(Measured)}
 """How they are declared."""
 
 DECLARED = {
@@ -90,7 +90,7 @@ DEFAULT_CAR: Mapping[str, float] = {name: variable.start for name, (_, variable)
 OF_CAR = {
     **DECLARED,
     **{name: ("a vehicle file", variable) for name, variable in MEASURED.items()},
-    **{each.name: (MOTOR.name, each) for each in interface(MOTOR) if each.name == "T_max"},
+    **{variable.name: (MOTOR.name, variable) for variable in interface(MOTOR) if variable.name == "T_max"},
 }
 """All from which something follows."""
 
@@ -120,16 +120,16 @@ def of_one_car(entries: Mapping[str, Any], taken: Collection[str]) -> dict[str, 
         ParameterFileError: entries are no numbers.
         NoSuchCar: they disagree, are out of bounds, or no car has them.
     """
-    given = {name: _number(name, value) for name, value in entries.items() if name in OF_CAR}
+    known = {name: _number(name, value) for name, value in entries.items() if name in OF_CAR}
     try:
-        followed = _common(frozenset(given.items()))
+        followed = _common(frozenset(known.items()))
         if set(taken) >= set(FOLLOW):
-            followed = followed | _detailed(frozenset({**given, **followed}.items()))
+            followed = followed | _detailed(frozenset({**known, **followed}.items()))
     except _DoesNotFollow as problem:
-        deciding = [name for name in DECIDING if name in given] or [*given]
-        guessed = [name for name in LAWS if name not in {*given, *told_by_others(given)} and law(name, given)]
+        deciding = [name for name in DECIDING if name in known] or [*known]
+        guessed = [name for name in LAWS if name not in {*known, *told_by_others(known)} and law(name, known)]
         also = f"; estimated: {', '.join(guessed)}" if guessed else ""
-        raise NoSuchCar(f"{_told(given, *deciding)}: {problem}{also}", *deciding) from problem
+        raise NoSuchCar(f"{_told(known, *deciding)}: {problem}{also}", *deciding) from problem
     return {**{name: value for name, value in entries.items() if name not in MEASURED}, **followed}
 
 
@@ -158,23 +158,23 @@ class _DoesNotFollow(Exception):
 
 
 @cache
-def _common(given: frozenset[tuple[str, float]]) -> dict[str, float]:
+def _common(entries: frozenset[tuple[str, float]]) -> dict[str, float]:
     """What follows for both plants and the design: what no entry tells, as it is estimated; C, if the file has the
     frequency or what is elastic in detail instead; phi_B from the gap."""
-    car = dict(given)
-    for name, value in given:
+    car = dict(entries)
+    for name, value in entries:
         _require_possible(name, value)
     for name, of in INSTEAD.items():
-        if name in car and (both := [each for each in of if each in car]):
+        if name in car and (both := [other for other in of if other in car]):
             raise NoSuchCar(f"{_told(car, name, *both)}: leave one out, as {both[0]} follows from {name}", name)
     elastic, told = any(name in car for name in SHAFTS), told_by_others(car)
-    found = {name: value for name, value in estimated(car).items() if name not in told}
-    bounds = {name: DECLARED[name][1].bounds() for name in found}
-    found = {name: min(max(value, bounds[name][0]), bounds[name][1]) for name, value in found.items()}
+    derived = {name: value for name, value in estimated(car).items() if name not in told}
+    bounds = {name: DECLARED[name][1].bounds() for name in derived}
+    derived = {name: min(max(value, bounds[name][0]), bounds[name][1]) for name, value in derived.items()}
     if "gap" in car:
-        found["phi_B"] = 0.5 * car["gap"] * car.get("i", DEFAULT_CAR["i"])
-    found = _others_than_usual(found)
-    car |= found
+        derived["phi_B"] = 0.5 * car["gap"] * car.get("i", DEFAULT_CAR["i"])
+    derived = _others_than_usual(derived)
+    car |= derived
     _require_agreeing(car)
 
     def frequency_with(C: float) -> float:
@@ -183,25 +183,25 @@ def _common(given: frozenset[tuple[str, float]]) -> dict[str, float]:
     if "frequency" in car:
         wanted = car["frequency"]
     elif not elastic or ("C" in car and "k_s" not in car):
-        return found
+        return derived
     else:
         wanted = _frequency(DETAILED, with_details(car, 1.0))
     C = _solved(DESIGN, frequency_with, wanted, *DECLARED["C"][1].bounds())
     if "C" not in car:
-        return found | _others_than_usual({"C": C})
+        return derived | _others_than_usual({"C": C})
     if not _close(frequency_with(car["C"]), wanted):
         raise NoSuchCar(
             f"C = {car['C']:g} N.m/rad and {_told(car, *SHAFTS)} disagree: with that C would be {C:.4g} N.m/rad; "
             "leave one of them out, and it follows",
             "C",
         )
-    return found
+    return derived
 
 
 @cache
-def _detailed(given: frozenset[tuple[str, float]]) -> dict[str, float]:
+def _detailed(entries: frozenset[tuple[str, float]]) -> dict[str, float]:
     """What follows for the validation vehicle."""
-    car = {name: value for name, value in given if name in DECLARED or name == "damping_ratio"}
+    car = {name: value for name, value in entries if name in DECLARED or name == "damping_ratio"}
 
     def stiffness(damping: float) -> float:
         if not car or "k_s" in car or ("C" not in car and any(name in car for name in SHAFTS)):
@@ -237,9 +237,9 @@ def with_details(car: Mapping[str, float], factor: float, damping: float = 1.0) 
     """
 
     def over_usual(name: str) -> float:
-        return found.get(name, DEFAULT_CAR[name]) / DEFAULT_CAR[name]
+        return details.get(name, DEFAULT_CAR[name]) / DEFAULT_CAR[name]
 
-    found = dict(car)
+    details = dict(car)
     factor = over_usual("k_s") if "k_s" in car else factor
     ratio = over_usual("i")
     scaled = {
@@ -247,9 +247,9 @@ def with_details(car: Mapping[str, float], factor: float, damping: float = 1.0) 
         **dict.fromkeys(WHEELS, over_usual("J_2") * ratio * ratio),
         **dict.fromkeys(WITH_MASS, over_usual("m")),
     }
-    found |= {name: DEFAULT_CAR[name] * by for name, by in scaled.items() if name not in car}
+    details |= {name: DEFAULT_CAR[name] * by for name, by in scaled.items() if name not in car}
     dampers = {name: damping * sqrt(over_usual(k) * over_usual(J)) for name, (k, J) in DAMPERS.items()}
-    return found | {name: DEFAULT_CAR[name] * by for name, by in dampers.items() if name not in car}
+    return details | {name: DEFAULT_CAR[name] * by for name, by in dampers.items() if name not in car}
 
 
 def _require_agreeing(car: Mapping[str, float]) -> None:
@@ -310,9 +310,9 @@ def _solved(
     def missed(x: float) -> float:
         return log(frequency(exp(x)) / wanted)
 
-    found = _by_secants(missed, log(low), log(high))
-    if found is not None:
-        return exp(found)
+    solution = _by_secants(missed, log(low), log(high))
+    if solution is not None:
+        return exp(solution)
     least, most = frequency(low), frequency(high)
     if least <= wanted <= most:
         from scipy.optimize import brentq  # pyright: ignore[reportUnknownVariableType]
@@ -349,9 +349,9 @@ def _close(frequency: float, other: float) -> bool:
     return abs(log(frequency / other)) <= log(1.0 + APART)
 
 
-def _others_than_usual(found: Mapping[str, float]) -> dict[str, float]:
+def _others_than_usual(values: Mapping[str, float]) -> dict[str, float]:
     """What has followed, rounded, where it is not that of the default car."""
-    rounded = {name: float(f"{value:.{DIGITS}g}") for name, value in found.items()}
+    rounded = {name: float(f"{value:.{DIGITS}g}") for name, value in values.items()}
     return {name: value for name, value in rounded.items() if value != DEFAULT_CAR[name]}
 
 

@@ -179,12 +179,12 @@ def car_names(own: Iterable[Fmu] = ()) -> list[str]:
 
 def declarations(fmus: Iterable[Fmu]) -> dict[str, list[tuple[str, Variable]]]:
     """For each parameter the names of the FMUs that have it, and how each declares it."""
-    found: dict[str, list[tuple[str, Variable]]] = {}
+    owners: dict[str, list[tuple[str, Variable]]] = {}
     for fmu in fmus:
         for variable in interface(fmu.block):
             if variable.causality == "parameter":
-                found.setdefault(variable.name, []).append((fmu.name, variable))
-    return found
+                owners.setdefault(variable.name, []).append((fmu.name, variable))
+    return owners
 
 
 def _read(path: Path, known: Owners, others: Collection[str], set_elsewhere: Mapping[str, str]) -> dict[str, Any]:
@@ -241,7 +241,7 @@ def _checked(name: str, entry: Any, known: Owners, others: Collection[str], set_
 
 def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> Any:
     """The value of an entry in SI units, which all that have the parameter must allow."""
-    kind, given = next((variable.fmi_type for _, variable in owners), "Real"), entry
+    kind, written = next((variable.fmi_type for _, variable in owners), "Real"), entry
     if isinstance(entry, str) and kind == "Real":
         entry = _quantity(name, entry, next((variable.unit or "1" for _, variable in owners), ""))
     python_type, meant = KINDS[kind]
@@ -254,7 +254,7 @@ def _value(name: str, entry: Any, owners: Collection[tuple[str, Variable]]) -> A
     for fmu, variable in owners:
         low, high = variable.bounds()
         if not low <= entry <= high:
-            degrees = f'; "{given} deg" is in degrees' if variable.unit == "rad" and given == entry else ""
+            degrees = f'; "{written} deg" is in degrees' if variable.unit == "rad" and written == entry else ""
             raise ParameterFileError(f"{name} = {entry:g}: {fmu} takes {variable.allowed()}{degrees}")
     return float(entry) if kind == "Real" else entry
 
@@ -289,7 +289,7 @@ def _nearest(name: str, known: Owners, others: Collection[str]) -> str:
     words = name.lower().split("_")
     meant_words = SYNONYMS.get(name.lower(), "_".join(SYNONYMS.get(word, word) for word in words)).split("_")
     places = _described(meant_words, known) or _described(words, known)
-    first = [each for each, at in places.items() if at == min(places.values()) and name not in RENAMED]
+    first = [candidate for candidate, at in places.items() if at == min(places.values()) and name not in RENAMED]
     near = f"did you mean {' or '.join(first[:3])}?" if first else meant(name, sorted({*known, *others}))
     return f"; {near}" if near else ""
 
@@ -297,12 +297,12 @@ def _nearest(name: str, known: Owners, others: Collection[str]) -> str:
 def _described(words: Sequence[str], known: Owners) -> dict[str, int]:
     """Names whose descriptions have words that begin with all of these, of a data sheet if there are any, and where."""
     places: dict[str, int] = {}
-    for each, ((_, variable), *_) in known.items():
+    for candidate, ((_, variable), *_) in known.items():
         described = variable.declaration.description.replace(",", "").split()
-        found = [[k for k, of in enumerate(described) if of.startswith(word)] for word in words if len(word) > 2]
-        if all(found) and len(found) == len(words):
-            places[each] = min(map(min, found))
-    return {each: at for each, at in places.items() if each in SHEET} or places
+        places_of = [[k for k, of in enumerate(described) if of.startswith(word)] for word in words if len(word) > 2]
+        if all(places_of) and len(places_of) == len(words):
+            places[candidate] = min(map(min, places_of))
+    return {candidate: at for candidate, at in places.items() if candidate in SHEET} or places
 
 
 def _line(path: Path, name: str) -> int | None:

@@ -68,5 +68,5 @@ def softened(car: Mapping[str, Any], before: Mapping[str, Any], settings: Settin
 
 def _overshoots(car: Mapping[str, Any], assumed: Mapping[str, Any], settings: Settings | None) -> np.ndarray:
     """Of each plant."""
-    found = [[worth(plant, name, car, assumed, settings)[1] for plant in PLANTS] for name in REDESIGN_MANOEUVRES]
-    return np.mean(found, axis=0)
+    overshoots = [[worth(plant, name, car, assumed, settings)[1] for plant in PLANTS] for name in REDESIGN_MANOEUVRES]
+    return np.mean(overshoots, axis=0)

@@ -33,20 +33,20 @@ class Remedy(NamedTuple):
 def cause(plant: Plant, motor: Motor, can: Can, weights: Weights = WEIGHTS) -> str:
     """How the drive train of a car without a controller swings, and what would do instead; to stand after a refusal."""
     frequency = drive_train(plant, motor, can, weights).omega_0 / (2.0 * pi)
-    found = sorted(remedies(plant, motor, can, weights), key=lambda each: abs(log(each.factor)))[:MOST]
-    instead = f"; {' or '.join(map(str, found))} would do" if found else ""
+    nearest = sorted(remedies(plant, motor, can, weights), key=lambda remedy: abs(log(remedy.factor)))[:MOST]
+    instead = f"; {' or '.join(map(str, nearest))} would do" if nearest else ""
     return f": the drive train swings at {frequency:.2g} Hz{instead}"
 
 
 def remedies(plant: Plant, motor: Motor, can: Can, weights: Weights) -> list[Remedy]:
     car = {"plant": plant, "motor": motor, "can": can}
-    found: list[Remedy] = []
+    possible: list[Remedy] = []
     for place, record in car.items():
         for name in sorted({*DECIDE, "T_cyc", "d_max"} & {*record._fields}):
             for furthest in (FURTHEST, 1.0 / FURTHEST):
                 if factor := _least(furthest, car, place, name, weights):
-                    found.append(Remedy(name, factor * getattr(record, name), factor))
-    return found
+                    possible.append(Remedy(name, factor * getattr(record, name), factor))
+    return possible
 
 
 def _least(furthest: float, car: Mapping[str, Any], place: str, name: str, weights: Weights) -> float | None:

@@ -88,12 +88,12 @@ def deviating(values: Mapping[str, Any], plant: str, controller: str, deviation:
         values: entries of parameter files, which reach every block that has the name.
         deviation: of all blocks but the controller.
     """
-    given = loop_parameters(values, plant, controller)
+    of_loop = loop_parameters(values, plant, controller)
     blocks = {
-        place: {name: given.get(f"{place}.{name}", value) for name, value in record()._asdict().items()}
+        place: {name: of_loop.get(f"{place}.{name}", value) for name, value in record()._asdict().items()}
         for place, record in loop_records(plant, controller).items()
     }
-    return given | changed(blocks, deviation)
+    return of_loop | changed(blocks, deviation)
 
 
 def changed(blocks: Mapping[str, Mapping[str, Any]], deviation: Deviation) -> dict[str, float]:

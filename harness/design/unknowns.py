@@ -51,7 +51,7 @@ class Unknown(NamedTuple):
 def not_given(entries: Mapping[str, Any]) -> list[Entry]:
     """What of DECIDE no entry of a vehicle file tells."""
     lacking = {*DECIDE} - told_by_others(entries) - entries.keys()
-    return [each for each in car_entries(entries) if each.name in lacking]
+    return [entry for entry in car_entries(entries) if entry.name in lacking]
 
 
 def unknowns(entries: Mapping[str, Any]) -> list[Unknown]:
@@ -62,10 +62,10 @@ def unknowns(entries: Mapping[str, Any]) -> list[Unknown]:
     """
     if not (lacking := not_given(entries)):
         return []
-    car, made = with_estimates(entries), built(PLANT)
+    car, settings = with_estimates(entries), built(PLANT)
     assumed = {**car, **design(car)}
-    found = [Unknown(each, *_worth(car, each, assumed, made)) for each in lacking]
-    return sorted(found, key=lambda each: (each.settling, each.overshoot), reverse=True)
+    unknown_entries = [Unknown(entry, *_worth(car, entry, assumed, settings)) for entry in lacking]
+    return sorted(unknown_entries, key=lambda unknown: (unknown.settling, unknown.overshoot), reverse=True)
 
 
 def _worth(car: Mapping[str, Any], entry: Entry, assumed: Mapping[str, Any], settings: Settings) -> tuple[float, float]:
@@ -86,12 +86,12 @@ def _worth(car: Mapping[str, Any], entry: Entry, assumed: Mapping[str, Any], set
 def unknowns_line(vehicle: Path | None) -> str:
     """What a vehicle file does not have, and what it is worth, in one line; "" where there is none, or it has all."""
     try:
-        found = unknowns(read_vehicle(vehicle)) if vehicle else []
+        of_car = unknowns(read_vehicle(vehicle)) if vehicle else []
     except DesignError as reason:
         return f"no gains can be designed for {vehicle}: {reason}"
-    each = (
+    texts = (
         f"{of.entry.name} = {of.entry.value:.3g} {printed(of.entry.unit)} ({of.entry.origin}) "
         f"{of.cells[0]} ms, {of.cells[1]} %"
-        for of in found
+        for of in of_car
     )
-    return f"not in {vehicle.name}, and {COSTS}: {'; '.join(each)}" if vehicle and found else ""
+    return f"not in {vehicle.name}, and {COSTS}: {'; '.join(texts)}" if vehicle and of_car else ""

@@ -73,52 +73,50 @@ class Proposal(NamedTuple):
 
 def draft(interface: Interface, place: str) -> list[Proposal]:
     """A proposal for each name of a place of the loop; no variable is proposed twice."""
-    found: dict[str, list[tuple[float, str]]] = {}
+    candidates: dict[str, list[tuple[float, str]]] = {}
     ports = {port.name: (port, causality) for causality, port in _ports(place)}
     for name, (port, causality) in ports.items():
         ours = words(port.variable)
         fitting = [v for v in interface.of_causality(causality) if _fits(v, port.unit)]
-        found[name] = sorted(((_alike(ours, words(v.name)), str(v.name)) for v in fitting), reverse=True)
+        candidates[name] = sorted(((_alike(ours, words(v.name)), str(v.name)) for v in fitting), reverse=True)
     proposals, taken = {}, set[str]()
-    for name in sorted(ports, key=lambda name: -found[name][0][0] if found[name] else 0.0):
-        left = [(share, theirs) for share, theirs in found[name] if theirs not in taken and share >= LEAST]
-        theirs = left[0][1] if left else None
-        sure = bool(left) and left[0][0] == 1.0 and [share for share, _ in left].count(1.0) == 1
+    for name in sorted(ports, key=lambda name: -candidates[name][0][0] if candidates[name] else 0.0):
+        free = [(share, theirs) for share, theirs in candidates[name] if theirs not in taken and share >= LEAST]
+        theirs = free[0][1] if free else None
+        sure = bool(free) and free[0][0] == 1.0 and [share for share, _ in free].count(1.0) == 1
         taken |= {theirs} if theirs else set()
         proposals[name] = Proposal(ports[name][0], theirs, sure)
-    drafted = (_last_of_its_kind(name, ports, proposals, found) for name in ports)
-    return [
-        each._replace(has_unit=not each.theirs or bool(unit_of(interface.variables[each.theirs]))) for each in drafted
-    ]
+    drafts = (_last_of_its_kind(name, ports, proposals, candidates) for name in ports)
+    return [of._replace(has_unit=not of.theirs or bool(unit_of(interface.variables[of.theirs]))) for of in drafts]
 
 
 def _last_of_its_kind(
     name: str,
     ports: Mapping[str, tuple[Port, str]],
     proposals: Mapping[str, Proposal],
-    found: Mapping[str, Sequence[tuple[float, str]]],
+    candidates: Mapping[str, Sequence[tuple[float, str]]],
 ) -> Proposal:
     """The proposal for a name; where it alone of a causality is left, and one variable that fits, that one."""
 
-    def left(causality: str) -> list[str]:
+    def unmatched(causality: str) -> list[str]:
         return [n for n, (_, of) in ports.items() if of == causality and n not in OPTIONAL and not proposals[n].theirs]
 
-    taken = {each.theirs for each in proposals.values()}
-    fitting = [theirs for _, theirs in found[name] if theirs not in taken]
-    alone = left(ports[name][1]) == [name] and len(fitting) == 1
+    taken = {proposal.theirs for proposal in proposals.values()}
+    fitting = [theirs for _, theirs in candidates[name] if theirs not in taken]
+    alone = unmatched(ports[name][1]) == [name] and len(fitting) == 1
     return proposals[name]._replace(theirs=fitting[0]) if alone else proposals[name]
 
 
 def as_toml(proposals: list[Proposal], file: str, place: str) -> str:
     """The mapping as a file: what is not sure is a comment until it has been read, what is missing stands below."""
     lines = [f"# {file} in the place of the {place}: names of the loop, and what they are in the FMU", f"[{place}]"]
-    for each in proposals:
-        if each.theirs is not None:
-            unit = f"in {each.port.unit}" if each.port.unit else ""
-            if unit and each.port.unit != "1" and not each.has_unit:
-                unit = f"{NO_UNIT} {each.port.unit}"
-            notes = ", ".join(note for note in (unit, "" if each.sure else NOT_SURE) if note)
-            entry = f"{'' if each.sure else '# '}{each.port.variable} = {dumps(each.theirs)}"
+    for proposal in proposals:
+        if proposal.theirs is not None:
+            unit = f"in {proposal.port.unit}" if proposal.port.unit else ""
+            if unit and proposal.port.unit != "1" and not proposal.has_unit:
+                unit = f"{NO_UNIT} {proposal.port.unit}"
+            notes = ", ".join(note for note in (unit, "" if proposal.sure else NOT_SURE) if note)
+            entry = f"{'' if proposal.sure else '# '}{proposal.port.variable} = {dumps(proposal.theirs)}"
             lines.append(entry + (f"  # {notes}" if notes else ""))
     lines += [f"# {line}" for line in missing(proposals)]
     return "\n".join(lines) + "\n"
@@ -127,7 +125,7 @@ def as_toml(proposals: list[Proposal], file: str, place: str) -> str:
 def missing(proposals: Sequence[Proposal]) -> Iterator[str]:
     """What nothing fits, in a line each: without what no run goes, and what is optional."""
     for needed, what in ((True, "missing, and no run goes without"), (False, "missing, but optional")):
-        lacking = (each.port for each in proposals if each.theirs is None)
+        lacking = (proposal.port for proposal in proposals if proposal.theirs is None)
         if names := [port.variable for port in lacking if (port.name not in OPTIONAL) == needed]:
             yield f"{what}: {', '.join(names)}"
 

@@ -63,7 +63,7 @@ Given = Mapping[tuple[str, str], Settings]
 
 
 def content(
-    given: Given,
+    settings_of: Given,
     of_car: Mapping[str, Any] | None = None,
     gains: Mapping[str, Any] | None = None,
     manoeuvres: Mapping[str, Manoeuvre] = MANOEUVRES,
@@ -84,14 +84,14 @@ def content(
     """
     if recording is not None and recording.name in manoeuvres:
         raise UserError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
-    if mapped := next((each for each in given.values() if each.mapping), None):
+    if mapped := next((settings for settings in settings_of.values() if settings.mapping), None):
         raise UserError(f"--map {'='.join(next(iter(mapped.mapping.items())))}: a page has the names of the loop")
-    fits = {key: fit(loop(settings)) for key, settings in given.items()}
+    fits = {key: fit(loop(settings)) for key, settings in settings_of.items()}
     car = with_estimates(of_car or _built_for(fits.values()))
-    plants, controllers = (list(dict.fromkeys(key[k] for key in given)) for k in (0, 1))
-    loops = loops_of({named(*key): fitted for key, fitted in fits.items()}, _are_ours(given))
+    plants, controllers = (list(dict.fromkeys(key[k] for key in settings_of)) for k in (0, 1))
+    loops = loops_of({named(*key): fitted for key, fitted in fits.items()}, _are_ours(settings_of))
     first = [fits[plant, controllers[0]] for plant in plants]
-    start = {name: value for plant in plants for name, value in given[plant, controllers[0]].parameters.items()}
+    start = {name: value for plant in plants for name, value in settings_of[plant, controllers[0]].parameters.items()}
     started = {port.name for port in PARAMETERS} | {f"plant.{name}" for m in manoeuvres.values() for name in m.road}
     turned = {"gains": knobs(GAINS, first, start), "car": knobs(CAR, first, start), "road": knobs(ROAD, first, start)}
     return {
@@ -102,18 +102,18 @@ def content(
         "plants": plants,
         "ours": controllers[0],
         "others": dict(zip(controllers[1:], cycle(BESIDE), strict=False)),
-        "base": {named(*key): _base(settings, fits[key], loops) for key, settings in given.items()},
-        "manoeuvres": _recorded(recording, given, controllers[0], plants)
-        | {name: _shown(each, plants, first) for name, each in manoeuvres.items()},
+        "base": {named(*key): _base(settings, fits[key], loops) for key, settings in settings_of.items()},
+        "manoeuvres": _recorded(recording, settings_of, controllers[0], plants)
+        | {name: _shown(manoeuvre, plants, first) for name, manoeuvre in manoeuvres.items()},
         **_by_hand(share_of(T_max)),
-        "knobs": {kind: [knob._asdict() for knob in found] for kind, found in turned.items()},
+        "knobs": {kind: [knob._asdict() for knob in of_kind] for kind, of_kind in turned.items()},
         "sport": SPORT,
         "comfort": COMFORT,
-        "follow": following(car, frequency_of_plant(next(iter(given.values())))),
-        "set": {name: value for each in given.values() for name, value in each.parameters.items() if name in started},
+        "follow": following(car, frequency_of_plant(next(iter(settings_of.values())))),
+        "set": {name: value for of in settings_of.values() for name, value in of.parameters.items() if name in started},
         "words": {**WORDS, **FORMS, "real": REAL.pattern},
         "panels": [
-            {"label": label, "curves": [each._asdict() for each in signals]} for label, signals in PANELS.items()
+            {"label": label, "curves": [signal._asdict() for signal in signals]} for label, signals in PANELS.items()
         ],
         "held": HELD,
         "metrics": [
@@ -133,7 +133,7 @@ def content(
 
 def _built_for(fits: Iterable[Fit]) -> dict[str, float]:
     """Entries of a vehicle file for the car that the plants were built for, where it is not the default one."""
-    starts = {name: start for each in fits for name, start in each.parameters({})["plant"].items()}
+    starts = {name: start for fitted in fits for name, start in fitted.parameters({})["plant"].items()}
     return {name: start for name, start in starts.items() if start != DEFAULT_CAR.get(name, start)}
 
 
@@ -159,21 +159,21 @@ def write_page(data: Mapping[str, Any], path: Path) -> None:
         unfinished.write_text(text, encoding="utf-8")
 
 
-def _are_ours(given: Given) -> bool:
-    return all(str(block) in PLACES[place] for each in given.values() for place, block in each.blocks.items())
+def _are_ours(settings_of: Given) -> bool:
+    return all(str(block) in PLACES[place] for of in settings_of.values() for place, block in of.blocks.items())
 
 
 def _base(settings: Settings, fitted: Fit, loops: Mapping[str, Any]) -> dict[str, float]:
     """`instance.name` -> value that a run has and the module's FMU does not start with."""
-    found = {f"{place}.seed": float(settings.seed) for place in ("motor", "can")}
+    values = {f"{place}.seed": float(settings.seed) for place in ("motor", "can")}
     for instance, interface in fitted.interfaces.items():
         declared = loops["fmus"][interface.identifier]["parameters"]
         for variable in interface.of_causality("parameter"):
             value = number(variable.start)
             if variable.type in KINDS and value is not None and value != declared[variable.name]["start"]:
-                found[f"{instance}.{variable.name}"] = value
-    found |= {name: float(value) for name, value in settings.parameters.items()}
-    return {name: value for name, value in found.items() if _has(fitted, name)}
+                values[f"{instance}.{variable.name}"] = value
+    values |= {name: float(value) for name, value in settings.parameters.items()}
+    return {name: value for name, value in values.items() if _has(fitted, name)}
 
 
 def _has(fitted: Fit, name: str) -> bool:
@@ -198,14 +198,14 @@ def _has_road(manoeuvre: Manoeuvre, fitted: Fit) -> bool:
     return True
 
 
-def _recorded(recording: Drive | None, given: Given, ours: str, plants: list[str]) -> dict[str, Any]:
+def _recorded(recording: Drive | None, settings_of: Given, ours: str, plants: list[str]) -> dict[str, Any]:
     """The recorded drive: on each plant brake and grade keep the car without control at the recorded speed."""
     if recording is None:
         return {}
     duration = float(np.ptp(recording.time))
     on_plants = {}
     for plant in plants:
-        settings = given[plant, ours]
+        settings = settings_of[plant, ours]
         load, T_max = car_of(settings)
         on_plants[plant] = manoeuvre_data(followed(Track.of(recording, T_max), load, settings)[0])
     return {

@@ -50,7 +50,7 @@ class Knob(NamedTuple):
     meaning: str
 
 
-def knobs(names: Sequence[str], fits: Sequence[Fit], given: Mapping[str, float]) -> Iterator[Knob]:
+def knobs(names: Sequence[str], fits: Sequence[Fit], values: Mapping[str, float]) -> Iterator[Knob]:
     """Those of the names that some instance has.
 
     Args:
@@ -67,9 +67,9 @@ def knobs(names: Sequence[str], fits: Sequence[Fit], given: Mapping[str, float])
         if not owners:
             continue
         key, variable = owners[0]
-        value = float(given.get(key, variable.start or 0.0))
-        least = max(float(each.min) for _, each in owners if each.min is not None)
-        most = min(float(each.max) for _, each in owners if each.max is not None)
+        value = float(values.get(key, variable.start or 0.0))
+        least = max(float(variable.min) for _, variable in owners if variable.min is not None)
+        most = min(float(variable.max) for _, variable in owners if variable.max is not None)
         far = NEAR.get(name, FAR)
         low = max(least, value / far) if least > 0.0 else max(least, min(far * value, 0.0))
         unit = unit_of(variable) or ""

@@ -16,7 +16,7 @@ FEW = 60
 def manoeuvre_data(manoeuvre: Manoeuvre) -> dict[str, Any]:
     """What a run of it needs, and what its metrics refer to."""
     T_driver = signal_data(manoeuvre.T_driver, manoeuvre.duration)
-    brake, slope = (signal_data(each, manoeuvre.duration, 0.5) for each in (manoeuvre.T_brake, manoeuvre.slope))
+    brake, slope = (signal_data(signal, manoeuvre.duration, 0.5) for signal in (manoeuvre.T_brake, manoeuvre.slope))
     return {
         "description": manoeuvre.description,
         "duration": manoeuvre.duration,

@@ -68,7 +68,7 @@ def loop(number: int, fitted: Fit, inputs: Sequence[str], fmus: Sequence[str]) -
     begin, end, row, known = bound
     tables = _Tables(number, row)
     steps, hand_over = tables.calls([*begin, *end]), tables.calls(wires.hand_over)
-    places = ", ".join(str(fmus.index(each.interface.identifier)) for each in instances)
+    places = ", ".join(str(fmus.index(instance.interface.identifier)) for instance in instances)
     text = [
         f"static unsigned char row_{number}[{len(row)}] __attribute__((aligned(8)));",
         f"static const uint32_t fmus_{number}[] = {{{places}}};",
@@ -95,7 +95,7 @@ def tables(loops: Sequence[Loop], guids: Mapping[str, str], exchanging: frozense
             "static const Fmu fmus[] = {\n"
             + "\n".join(_fmu(*item, item[0] in exchanging) for item in guids.items())
             + "\n};",
-            *(each.text for each in loops),
+            *(loop.text for loop in loops),
             f"static const Loop loops[] = {{{', '.join(f'LOOP_{k}' for k in range(len(loops)))}}};\n",
         ]
     )
@@ -179,9 +179,9 @@ class _Tables:
         return name
 
     def _pointer(self, address: int) -> str:
-        found = self._place(address)
-        assert found is not None
-        return found
+        pointer = self._place(address)
+        assert pointer is not None
+        return pointer
 
     def _place(self, address: int) -> str | None:
         """What is at an address that a call has: a byte of the row, or a value that is set."""

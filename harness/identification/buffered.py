@@ -20,9 +20,9 @@ class Buffered:
         for k, values in enumerate(self._results):
             self._buffer.set_res(k, memoryview(values))  # pyright: ignore[reportCallIssue, reportArgumentType]
 
-    def __call__(self, *given: np.ndarray) -> list[np.ndarray]:
+    def __call__(self, *arguments: np.ndarray) -> list[np.ndarray]:
         """The results, which the next call overwrites. A vector may be given for a matrix of one row or column."""
-        for place, values in zip(self._given, given, strict=True):
+        for place, values in zip(self._given, arguments, strict=True):
             place[:] = np.ravel(values, order="F")
         self._run()
         return [values.reshape(shape, order="F") for values, shape in zip(self._results, self._shapes, strict=True)]

@@ -75,7 +75,7 @@ class Row(NamedTuple):
         return "" if signed else f"{100.0 * self.half / abs(self.value):.2g}"
 
 
-def found(identified: Identified) -> list[Row]:
+def rows_of(identified: Identified) -> list[Row]:
     """Of each parameter that was identified."""
     answer, p = identified.found, identified.p._asdict()
     halves = {name: Z_95 * deviation for name, deviation in answer.deviations.items()}
@@ -129,7 +129,7 @@ def of_car_line(identified: Identified) -> str:
 def identified_lines(identified: Identified) -> list[str]:
     """What was found, for people, a line each: parameters with unit, 95 % interval and what told them, and how they
     fit."""
-    quality, rows = identified.quality, found(identified)
+    quality, rows = identified.quality, rows_of(identified)
     name, number = max(len(row.name) for row in rows), max(len(str(row)) for row in rows)
     told = [f"told by {row.told_by}" if row.told_by else "not told: what is known of cars" for row in rows]
     shares = [f"({row.percent} %)" if row.percent else "" for row in rows]
@@ -161,7 +161,7 @@ def identified_car(identified: Identified, vehicle: Mapping[str, Any] | None = N
         RecordingError: C is not known any better.
     """
     C, half = of_car(identified)
-    rows = {row.name: row for row in found(identified)}
+    rows = {row.name: row for row in rows_of(identified)}
     if not rows["C"].told_by or half > WIDEST_INTERVAL * C:
         raise RecordingError(
             f"C of the car = {C:.3g} +- {half:.2g} N.m/rad is known to +- {100.0 * half / C:.2g} % only, and a vehicle "
@@ -200,7 +200,7 @@ def document(identified: Identified) -> dict[str, Any]:
         "standard_deviations": answer.deviations,
         "covariance": answer.covariance.tolist(),
         "intervals_95": {
-            row.name: {"value": row.value, "half": row.half, "told_by": row.told_by} for row in found(identified)
+            row.name: {"value": row.value, "half": row.half, "told_by": row.told_by} for row in rows_of(identified)
         },
         "torque_loop": loop and {**vars(loop.loop), "standard_deviations": loop.deviations, "noise": loop.noise},
         "tyre": tyre and vars(tyre),

@@ -94,13 +94,13 @@ OF_TYRE = Threshold(
 )
 
 
-def diagnose_parameters(found: Found) -> Iterator[str]:
+def diagnose_parameters(estimate: Found) -> Iterator[str]:
     """What skews and gains surely are, and what else they may mean."""
-    p, off = found.p, found.deviations
+    p, off = estimate.p, estimate.deviations
     if any(Z_95 * off.get(name, 0.0) > CLOSE * getattr(p, name) for name in ("J_2", "C")):
         return  # what a weak excitation lacks may look like any cause
     yield from _skews(p, off)
-    unsure = MODEL_GAIN if lacking(found) else 0.0
+    unsure = MODEL_GAIN if lacking(estimate) else 0.0
     if abs(p.g_T - 1.0) > max(unsure, SURELY * off.get("g_T", np.inf)):
         yield (
             f"the recorded motor torque looks {p.g_T:.4g} times the true one, or J_1 = {p.J_1:g} kg.m2 should be "
@@ -138,20 +138,20 @@ def _late(time: float) -> str:
     return f"{1e3 * abs(time):.1f} ms{least} {'late' if time > 0.0 else 'early'}"
 
 
-def lacking(found: Found) -> list[str]:
+def lacking(estimate: Found) -> list[str]:
     """The channels that the model does not explain."""
-    p, noise = found.p, found.noise
+    p, noise = estimate.p, estimate.noise
     lacks = {"motor speed": p.lack_1 / noise.omega_1, "load torque": p.lack_L / noise.T_load if noise.T_load else 0.0}
     return [channel for channel, share in lacks.items() if share > LACKING]
 
 
-def diagnose_model(found: Found, T_load: float) -> Iterator[str]:
+def diagnose_model(estimate: Found, T_load: float) -> Iterator[str]:
     """Whether the model explains the car.
 
     Args:
         T_load: fit of the load torque over free runs in %.
     """
-    if lacks := lacking(found):
+    if lacks := lacking(estimate):
         yield (
             f"two masses and a tyre do not explain all of this car: {' and '.join(lacks)} "
             f"{'have' if len(lacks) > 1 else 'has'} more in every sample than the noise of the sensors; the intervals "
@@ -222,15 +222,15 @@ def diagnose_spectrum(omega_1: np.ndarray, T_s: float) -> Iterator[str]:
         )
 
 
-def diagnose_excitation(found: Found) -> Iterator[str]:
+def diagnose_excitation(estimate: Found) -> Iterator[str]:
     """What the recording does not tell, or hardly."""
-    p, phi = found.p, found.predicted.states[:, State._fields.index("phi")]
+    p, phi = estimate.p, estimate.predicted.states[:, State._fields.index("phi")]
     driving, braking = (float(np.mean(side * phi > p.phi_B)) for side in (1.0, -1.0))
     if min(driving, braking) < FLANK:
         side = "never drive" if driving < FLANK else "never brake"
         yield f"the teeth {side}, so that the gap is not crossed and phi_B is not told; excite about zero torque"
-    known = [name for name in found.free if name in OF_CAR]
-    untold = [name for name in known if not found.told_by(name)]
+    known = [name for name in estimate.free if name in OF_CAR]
+    untold = [name for name in known if not estimate.told_by(name)]
     if untold:
         meanings = ", ".join(PRIORS[name].meaning for name in untold)
         yield (
@@ -240,7 +240,7 @@ def diagnose_excitation(found: Found) -> Iterator[str]:
     wide = [
         name
         for name in ("J_2", "C", "phi_B")
-        if name not in untold and Z_95 * found.deviations.get(name, 0.0) > CLOSE * getattr(p, name)
+        if name not in untold and Z_95 * estimate.deviations.get(name, 0.0) > CLOSE * getattr(p, name)
     ]
     if wide:
         yield f"{', '.join(wide)}: 95 % interval wider than +- {100.0 * CLOSE:g} %; excite more or longer"

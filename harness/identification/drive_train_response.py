@@ -57,5 +57,5 @@ def resonance(p: Parameters, behind: Tyre | None = None) -> float:
     def minus(f: float) -> float:
         return -float(abs(response(p, np.array([f]), behind))[0])
 
-    found: Any = minimize_scalar(minus, bounds=(near - 0.1, near + 0.1), method="bounded")
-    return float(found.x)
+    peak: Any = minimize_scalar(minus, bounds=(near - 0.1, near + 0.1), method="bounded")
+    return float(peak.x)

@@ -51,7 +51,7 @@ def driven_plants(identified: Identified, vehicle: Mapping[str, Any], settings: 
         for plant in PLANTS:
             _, near = fitted(plant, _beginning(identified, FIRST), noise, car, settings, starts, most=20)
             fits.append(fitted(plant, _beginning(identified, LONGEST), noise, car, settings, [near])[0])
-    best = min(fits, key=lambda found: found.error)
+    best = min(fits, key=lambda step: step.error)
     held_out = identified.drive.omega_1[round((1.0 - HELD_OUT) * len(identified.drive)) :]
     if (
         best.error > (1.0 - 0.01 * identified.quality.omega_1) * float(np.std(held_out))

@@ -86,9 +86,9 @@ class Found:
         as the scores of windows scatter more than noise alone (sandwich); and what else they are off by."""
         inverse = np.linalg.inv(self.information.sum(axis=0) + np.diag(before(self.free)))
         windows = max(round(len(self.scores) * self.T_s / WINDOW), 2)
-        each = np.array([part.sum(axis=0) for part in np.array_split(self.scores, windows)])
-        each -= each.mean(axis=0)
-        sandwich = inverse @ (each.T @ each) @ inverse * windows / (windows - 1)
+        scores = np.array([part.sum(axis=0) for part in np.array_split(self.scores, windows)])
+        scores -= scores.mean(axis=0)
+        sandwich = inverse @ (scores.T @ scores) @ inverse * windows / (windows - 1)
         wider = LINEARISED * np.sqrt(np.maximum(np.diag(sandwich) / np.diag(inverse), 1.0)) * self.scale
         return inverse * np.outer(wider, wider) + np.diag([self.off.get(name, 0.0) ** 2 for name in self.free])
 
@@ -129,7 +129,7 @@ def search(predictor: Predictor, start: Parameters, free: Sequence[str], centre:
 
     differences = np.full(len(free), DIFFERENCES[0])
 
-    def found(p: Parameters, predicted: Predicted, passes: int) -> Found:
+    def estimate_at(p: Parameters, predicted: Predicted, passes: int) -> Found:
         """With the derivatives there."""
         d_size, d_log = np.empty((2, 2, len(free), *predicted.size[:, counted].shape[1:]))
         for k in range(len(free)):
@@ -144,7 +144,7 @@ def search(predictor: Predictor, start: Parameters, free: Sequence[str], centre:
         return Found(p, free, centre, predicted, scores, information, predictor.noise, drive.T_s, passes, drive.off)
 
     predicted = predictor.predicted(start, at)
-    best, lowest, trust = found(start, predicted, 1), cost(start, predicted), 1e-2
+    best, lowest, trust = estimate_at(start, predicted, 1), cost(start, predicted), 1e-2
     for passes in range(2, most + 1):
         g = best.scores.sum(axis=0) + weight * surprise(best.p, free, centre)
         # what is at its bound stays there if the recording would have it beyond
@@ -162,7 +162,7 @@ def search(predictor: Predictor, start: Parameters, free: Sequence[str], centre:
         now = cost(p, predicted)
         if np.isfinite(now) and now < lowest:
             gain, lowest, trust = lowest - now, now, max(trust / 10.0, 1e-9)
-            best = found(p, predicted, passes)
+            best = estimate_at(p, predicted, passes)
             if gain < ENOUGH:
                 break
         else:

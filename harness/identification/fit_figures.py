@@ -79,8 +79,8 @@ def predicted(identified: Identified, recording: Measurement, window: tuple[floa
     file_units, t, T_s = recording.file_units, recording.time, identified.drive.T_s
     first = max(round((window[0] - t[0]) / T_s), round(BURN_IN / T_s))
     first = max(min(first, len(identified.drive) - round(SIMULATED / T_s)), 1)
-    found = identified.found
-    at, runs = free_runs(identified.predictor, found.p, found.predicted.states, first)
+    p = identified.found.p
+    at, runs = free_runs(identified.predictor, p, identified.found.predicted.states, first)
     gap = np.full((len(at), 1), np.nan)
     x = np.hstack([t[at], gap]).ravel()
     omega_1, omega_2, T_gear, T_load = (np.hstack([runs[..., k], gap]).ravel() for k in range(4))
@@ -119,7 +119,7 @@ def predicted(identified: Identified, recording: Measurement, window: tuple[floa
     if recording.T_load is not None:
         load = measured(-recording.T_load, "T_load", "measured, positive when it drives", 1.0)
         panels.append(
-            Panel(f"load torque\n{file_units['T_load']}", [load, model(-found.p.g_L * T_load, "T_load", "predicted")])
+            Panel(f"load torque\n{file_units['T_load']}", [load, model(-p.g_L * T_load, "T_load", "predicted")])
         )
     return panels
 

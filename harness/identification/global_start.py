@@ -24,7 +24,7 @@ PASSES = 10
 """Into each valley."""
 
 
-def best_start(predictor: Predictor, given: Parameters, free: Sequence[str]) -> Parameters:
+def best_start(predictor: Predictor, known: Parameters, free: Sequence[str]) -> Parameters:
     """The end of a short search, the likeliest of those from what is given and from the best with each inertia.
 
     Args:
@@ -37,11 +37,11 @@ def best_start(predictor: Predictor, given: Parameters, free: Sequence[str]) -> 
 
     def likeliest(ratio: float) -> Parameters:
         others = (
-            given._replace(J_2=ratio * given.J_1, C=given.J_1 * (2.0 * pi * frequency) ** 2, phi_B=phi_B)
+            known._replace(J_2=ratio * known.J_1, C=known.J_1 * (2.0 * pi * frequency) ** 2, phi_B=phi_B)
             for frequency, phi_B in product(FREQUENCIES, HALF_GAPS)
         )
         return min(others, key=lambda p: piece.predicted(p).cost)
 
-    starts = [given, *map(likeliest, INERTIAS)]
-    ends = [search(piece, start, free, given, most=PASSES) for start in starts]
+    starts = [known, *map(likeliest, INERTIAS)]
+    ends = [search(piece, start, free, known, most=PASSES) for start in starts]
     return min(ends, key=lambda end: end.predicted.cost).p

@@ -9,7 +9,7 @@ from driverecords.measurement import Measurement
 from ..views.page.figures import figure
 from ..views.page.report import Heading, Row, Section, Table, write_report
 from ..views.panels import Axis, within
-from .car_file import found, meaning, of_car
+from .car_file import meaning, of_car, rows_of
 from .fit_figures import FREQUENCY, predicted, responses
 from .free_runs import SIMULATED
 from .identify import Identified
@@ -35,7 +35,7 @@ def report(identified: Identified, recording: Measurement, provenance: Mapping[s
 
 def verdict(identified: Identified) -> str:
     """In one sentence."""
-    rows = [row for row in found(identified) if row.name in ("J_2", "C", "phi_B")]
+    rows = [row for row in rows_of(identified) if row.name in ("J_2", "C", "phi_B")]
     text = ", ".join(f"{row.name} {row}".replace("+-", "±") if row.told_by else f"{row.name} not told" for row in rows)
     count = len(identified.warnings)
     return (
@@ -67,7 +67,7 @@ def _found(identified: Identified) -> Table:
                 row.told_by or "nothing: what is known of cars",
             ]
         )
-        for row in found(identified)
+        for row in rows_of(identified)
     ]
     C, half = of_car(identified)
     values = ["C", "in the vehicle file", f"{C:.5g}", f"{half:.2g}", f"{100.0 * half / C:.2g}"]

@@ -166,26 +166,26 @@ def identify(
             "quarter"
         )
     predictor = Predictor(drive, of_sensors(drive, recording.T_mot), behind)
-    found = fit(predictor, start, more, log)
+    estimate = fit(predictor, start, more, log)
     measured = drive.T_load is not None
     log("judging it by data that were not used")
-    quality = judged(predictor, found)
+    quality = judged(predictor, estimate)
     at = drive.longest
-    valid, omega_2 = recording.valid, found.predicted.states[at.start : at.stop - 1, 1]
+    valid, omega_2 = recording.valid, estimate.predicted.states[at.start : at.stop - 1, 1]
     wheel_speed = late_wheel_speed(recording.omega_2[at], None if valid is None else valid[at], omega_2, drive.T_s)
     warnings = (
         *recording.warnings,
         *(diagnose_torque_loop(loop, drive.T_s, tau) if loop else ()),
         *diagnose_spectrum(drive.omega_1[at], drive.T_s),
-        *diagnose_outliers(found.predicted, drive.T_s),
-        *(diagnose_offsets(found.predicted, found.p) if measured else ()),
-        *diagnose_parameters(found),
-        *(diagnose_model(found, quality.T_load) if measured else ()),
-        *diagnose_excitation(found),
+        *diagnose_outliers(estimate.predicted, drive.T_s),
+        *(diagnose_offsets(estimate.predicted, estimate.p) if measured else ()),
+        *diagnose_parameters(estimate),
+        *(diagnose_model(estimate, quality.T_load) if measured else ()),
+        *diagnose_excitation(estimate),
     )
     name = WITH_LOAD if measured else WITHOUT_LOAD
     answers = loop if loop and loop.answers else None
-    return Identified(name, found, predictor, answers, wheel_speed, quality, warnings)
+    return Identified(name, estimate, predictor, answers, wheel_speed, quality, warnings)
 
 
 def of_sensors(drive: Drive, T_mot: np.ndarray) -> Noise:
@@ -224,10 +224,10 @@ def fit(predictor: Predictor, start: Parameters, more: Sequence[str] = (), log: 
     return best
 
 
-def judged(predictor: Predictor, found: Found) -> Quality:
+def judged(predictor: Predictor, estimate: Found) -> Quality:
     """The fit without the last quarter, on it."""
     cut = round((1.0 - HELD_OUT) * len(predictor.drive))
-    p = search(predictor.of(predictor.drive.between(0, cut)), found.p, found.free, found.centre, most=6).p
+    p = search(predictor.of(predictor.drive.between(0, cut)), estimate.p, estimate.free, estimate.centre, most=6).p
     predicted = predictor.predicted(p)
     at, runs = free_runs(predictor, p, predicted.states, cut)
     size = predicted.size[:, predicted.counted[predicted.counted >= cut]]

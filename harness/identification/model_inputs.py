@@ -101,7 +101,7 @@ class Drive:
         beyond = int(np.ceil(LATEST / self.T_s)) * parts
         known = [torque[first:last].ravel() for first, last in self.pieces]
         ends = [torque[last, :1] for _, last in self.pieces]
-        held = [np.pad(np.append(*each), beyond, mode="edge") for each in zip(known, ends, strict=True)]
+        held = [np.pad(np.append(piece, end), beyond, mode="edge") for piece, end in zip(known, ends, strict=True)]
         return [make_interp_spline((np.arange(len(T)) - beyond) / parts, T, k=3).antiderivative() for T in held]
 
 

@@ -161,8 +161,8 @@ class Predictor:
         once = np.array([*p, self.noise.omega_1, self.noise.T_mot, r_L, *self.behind, self.drive.T_s], dtype=float)
         constant = np.tile(once[:, None], (1, n))
         constant[len(p) + Noise._fields.index("T_mot")] *= self._noisy[first:last]
-        given = self.drive.torque(p.late_T)[first:last].T, self._recorded[:, first + 1 : last + 1], constant
-        return _filter().passed(n)(start, *given)
+        inputs = self.drive.torque(p.late_T)[first:last].T, self._recorded[:, first + 1 : last + 1], constant
+        return _filter().passed(n)(start, *inputs)
 
 
 class _Filter:
@@ -207,8 +207,8 @@ class _Filter:
         output, by_L = ca.substitute([load, ca.jacobian(load, z)], [z], [x_1])
         x_2, P, size_L, log_L = corrected(x_1, P, 1, output, by_L, r_L)
         after = ca.vertcat(x_2, *[P[place] for place in LOWER])
-        given = [ca.vertcat(x, lower), T_mot, recorded, once]
-        return compiled(ca.Function("prediction", given, [after, ca.vertcat(size_1, size_L, log_1, log_L)]))
+        inputs = [ca.vertcat(x, lower), T_mot, recorded, once]
+        return compiled(ca.Function("prediction", inputs, [after, ca.vertcat(size_1, size_L, log_1, log_L)]))
 
 
 _filter = cache(_Filter)

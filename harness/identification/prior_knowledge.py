@@ -44,18 +44,18 @@ def identify(
     require_kind("recording", recording, Measurement, "a Measurement, as read_measurement reads it")
     require_each("more", more, str, "names of parameters")
     _, motor, _ = records(vehicle or {})
-    found = identified_from(recording, *known(vehicle or {}), motor.tau, more, log)
-    if found.explained or not found.found.told_by("phi_B"):
-        return found
+    identified = identified_from(recording, *known(vehicle or {}), motor.tau, more, log)
+    if identified.explained or not identified.found.told_by("phi_B"):
+        return identified
     log("driving both plants by the recorded torque, as the model does not explain the car")
     failed = None
     try:
         # the other build would take minutes
         settings = built_together(Settings(plant, build=NATIVE) for plant in PLANTS)[0]
-        found = replace(found, plant_fit=driven_plants(found, vehicle or {}, settings))
+        identified = replace(identified, plant_fit=driven_plants(identified, vehicle or {}, settings))
     except UserError as reason:
         failed = reason
-    return replace(found, warnings=(*found.warnings, *diagnose_driven(found, failed)))
+    return replace(identified, warnings=(*identified.warnings, *diagnose_driven(identified, failed)))
 
 
 def known(vehicle: Mapping[str, Any]) -> tuple[Parameters, Vehicle]:

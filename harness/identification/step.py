@@ -183,7 +183,7 @@ def identify_step(recording: Measurement, vehicle: Mapping[str, Any], settings: 
     with kept_loaded():
         starts = [{"C": log(C), "phi_B": log(phi_B)} for C, phi_B in product(STIFFNESSES, GAPS)]
         fits = [fitted(plant, step, noise, vehicle, settings, starts)[0] for plant in PLANTS]
-    best, other = sorted(fits, key=lambda found: found.error)
+    best, other = sorted(fits, key=lambda step: step.error)
     apart = {
         name: float(np.clip(abs(log(other.values[name] / value)), *APART[name])) for name, value in best.values.items()
     }
@@ -191,9 +191,9 @@ def identify_step(recording: Measurement, vehicle: Mapping[str, Any], settings: 
     return replace(best, halves={name: hypot(half, unlike[name]) for name, half in best.halves.items()})
 
 
-def unexplained(found: Step) -> float:
+def unexplained(step: Step) -> float:
     """Share of the error that is beyond the noise."""
-    return sqrt(max(1.0 - (EXPLAINED * found.noise / found.error) ** 2, 0.0))
+    return sqrt(max(1.0 - (EXPLAINED * step.noise / step.error) ** 2, 0.0))
 
 
 def fitted(
@@ -216,7 +216,7 @@ def fitted(
     system, known = _plant(settings.replace(plant=plant)), with_estimates(vehicle)
     names = [name for name in SEARCHED if name != "damping" or plant != PLANTS[0]]
     names = [name for name in names if name != "phi_B" or step.reversal]
-    spread = np.array([SEARCHED[name].known for name in names])
+    deviation_of = np.array([SEARCHED[name].known for name in names])
     size = noise
 
     def error(x: np.ndarray) -> np.ndarray:
@@ -226,24 +226,24 @@ def fitted(
             omega_1 = _motor_speed(system, plant, step, known, dict(zip(names, x.tolist(), strict=True)))
         except (ParameterFileError, SimulationError):
             return np.full(len(step.omega_1) + len(x), 1e3)
-        return np.concatenate([(omega_1 - step.omega_1) / size, x / spread])
+        return np.concatenate([(omega_1 - step.omega_1) / size, x / deviation_of])
 
     begin = min(
         (np.array([ORIGIN + start.get(name, 0.0) for name in names]) for start in starts),
         key=lambda x: float(error(x) @ error(x)),
     )
     for _ in range(2):
-        found = least_squares(error, begin, diff_step=1e-3, x_scale=np.minimum(spread, 0.3), max_nfev=most)
-        begin, n = found.x, len(step.omega_1)
-        rms = float(np.sqrt(np.mean((found.fun[:n] * size) ** 2)))
+        fit = least_squares(error, begin, diff_step=1e-3, x_scale=np.minimum(deviation_of, 0.3), max_nfev=most)
+        begin, n = fit.x, len(step.omega_1)
+        rms = float(np.sqrt(np.mean((fit.fun[:n] * size) ** 2)))
         size = max(noise, rms)  # what the model does not explain counts as noise from now on
-    J, r = found.jac[:n], found.fun[:n]
-    H = np.linalg.inv(found.jac.T @ found.jac)
+    J, r = fit.jac[:n], fit.fun[:n]
+    H = np.linalg.inv(fit.jac.T @ fit.jac)
     windows = max(round(float(step.at[-1]) / CORRELATED), 2)
     scores = np.array([part.sum(axis=0) for part in np.array_split(J * r[:, None], windows)])
     sandwich = H @ (scores.T @ scores) @ H
     deviations = np.sqrt(np.maximum(np.diag(H), np.diag(sandwich)))
-    moved = dict(zip(names, (found.x - ORIGIN).tolist(), strict=True))
+    moved = dict(zip(names, (fit.x - ORIGIN).tolist(), strict=True))
     halves = {name: Z_95 * float(of) for name, of in zip(names, deviations, strict=True) if name in ("C", "phi_B")}
     values = {name: known[name] * float(np.exp(moved[name])) for name in halves}
     return Step(plant, values, halves, rms, noise), moved

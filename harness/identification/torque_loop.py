@@ -172,7 +172,7 @@ def fitted(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float) -> FittedLoop:
     lower, upper = (SHORTEST, -np.inf, -np.inf, EARLIEST), (LONGEST, np.inf, np.inf, LATEST)
     start = TorqueLoop(START, delay=_nearest_delay(T_ref, T_mot, T_s, at))
     noise = max(white_noise(T_mot), 1e-6 * float(np.ptp(T)))
-    found = least_squares(
+    fit = least_squares(
         misses,
         astuple(start),
         derivatives,  # pyright: ignore[reportArgumentType]
@@ -181,7 +181,7 @@ def fitted(T_ref: np.ndarray, T_mot: np.ndarray, T_s: float) -> FittedLoop:
         loss="soft_l1",
         f_scale=OUTLYING * noise,
     )
-    loop = TorqueLoop(*map(float, found.x))
+    loop = TorqueLoop(*map(float, fit.x))
     torque = loop.torque(T_ref, T_s)
     off = (T_mot - torque) ** 2
     met = uniform_filter1d(off, max(round(AROUND / T_s), 3)) < (MET * noise) ** 2

@@ -39,18 +39,18 @@ def late_wheel_speed(
     if use.sum() < 10 * (last - first):
         return None
     shifts = np.arange(first, last + 1)
-    left = np.array([np.where(use, y - omega_2[at - shift], 0.0) ** 2 for shift in shifts])
-    whole = _lowest(left.sum(axis=1), shifts)
-    parts = [_lowest(part.sum(axis=1), shifts) for part in np.array_split(left, 4, axis=1)]
+    errors = np.array([np.where(use, y - omega_2[at - shift], 0.0) ** 2 for shift in shifts])
+    whole = _lowest(errors.sum(axis=1), shifts)
+    parts = [_lowest(part.sum(axis=1), shifts) for part in np.array_split(errors, 4, axis=1)]
     if whole is None or None in parts:
         return None
     return LateWheelSpeed(whole * T_s, float(np.std(np.array(parts), ddof=1)) * T_s / 2.0)
 
 
-def _lowest(left: np.ndarray, shifts: np.ndarray) -> float | None:
+def _lowest(errors: np.ndarray, shifts: np.ndarray) -> float | None:
     """Where a parabola through the lowest value and its neighbours is lowest."""
-    k = int(np.argmin(left))
-    if k in (0, len(left) - 1):
+    k = int(np.argmin(errors))
+    if k in (0, len(errors) - 1):
         return None
-    before, least, after = left[k - 1 : k + 2]
+    before, least, after = errors[k - 1 : k + 2]
     return float(shifts[k] + 0.5 * (before - after) / (before - 2.0 * least + after))

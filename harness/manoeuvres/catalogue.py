@@ -182,10 +182,10 @@ EVERYDAY = (
 )
 """The days of an electric car."""
 
-MANOEUVRES: dict[str, Manoeuvre] = ByName((each.name, each) for each in (*USUAL_MANOEUVRES, *EVERYDAY))
+MANOEUVRES: dict[str, Manoeuvre] = ByName((manoeuvre.name, manoeuvre) for manoeuvre in (*USUAL_MANOEUVRES, *EVERYDAY))
 """The manoeuvres of the project, by name."""
 
 TOWN_DRIVE = Path(__file__).parent / "data" / "town_drive.csv"
 """A short drive in town of our own making, in the layout of a recording."""
 
-COMPARED = tuple(each.name for each in USUAL_MANOEUVRES if each.name not in ("prbs15", "launch_brake", "hill_hold"))
+COMPARED = tuple(m.name for m in USUAL_MANOEUVRES if m.name not in ("prbs15", "launch_brake", "hill_hold"))

@@ -26,7 +26,7 @@ class Rest(NamedTuple):
 def step_of(demand: Lines) -> tuple[float, float] | None:
     """Instant in s and height of the one step that the demand makes; None if it makes none, or something else."""
     times, values = demand.times, demand.values
-    changes = [k for k, (one, other) in enumerate(pairwise(values)) if one != other]
+    changes = [k for k, (before, after) in enumerate(pairwise(values)) if before != after]
     if not changes or times[changes[-1] + 1] - times[changes[0]] > RISE:
         return None
     way = values[-1] - values[0]

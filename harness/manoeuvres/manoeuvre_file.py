@@ -107,11 +107,11 @@ def _parts(name: str, entries: list[Any], unit: str, duration: float) -> Iterato
             shown = "it has no kind" if kind is None else f"kind = {plain(repr(kind), 60)} is unknown"
             raise ManoeuvreError(f"{where}: {shown}; {nearest(str(kind or ''), KINDS)}")
         try:
-            given = _arguments(kind, {key: value for key, value in entry.items() if key != "kind"}, unit)
+            arguments = _arguments(kind, {key: value for key, value in entry.items() if key != "kind"}, unit)
             for key in ("at", "begin"):
-                if key in given and not given[key] < duration:
-                    raise ManoeuvreError(f"{key} = {given[key]:g}: the manoeuvre ends at {duration:g} s")
-            yield KINDS[kind](**given)
+                if key in arguments and not arguments[key] < duration:
+                    raise ManoeuvreError(f"{key} = {arguments[key]:g}: the manoeuvre ends at {duration:g} s")
+            yield KINDS[kind](**arguments)
         except ManoeuvreError as problem:
             raise ManoeuvreError(f"{where}, {kind}: {problem}") from problem
 

@@ -173,19 +173,19 @@ RANGES = {
 }
 
 
-def require(**given: float) -> None:
+def require(**arguments: float) -> None:
     """
     Raises:
         ManoeuvreError: an argument is not finite or out of range; the end does not come after the begin.
     """
-    for name, value in given.items():
+    for name, value in arguments.items():
         if not isfinite(value):
             raise ManoeuvreError(f"{name} = {value:g}: it must be a finite number")
         low, high = RANGES.get(name, (value, value))
         if not low <= value <= high:
             raise ManoeuvreError(f"{name} = {value:g}: it must be {low:g} to {high:g} {UNITS[name]}")
-    if "end" in given and not given["begin"] < given["end"]:
-        raise ManoeuvreError(f"end = {given['end']:g}: it must come after begin, {given['begin']:g} s")
+    if "end" in arguments and not arguments["begin"] < arguments["end"]:
+        raise ManoeuvreError(f"end = {arguments['end']:g}: it must come after begin, {arguments['begin']:g} s")
 
 
 def summed(parts: Iterable[Signal]) -> Signal:
@@ -201,9 +201,9 @@ def _added(drawn: Sequence[Lines]) -> Lines:
     """The sum of straight lines, with a corner where one of them has one and a jump where one jumps."""
     import numpy as np
 
-    drawn = [Lines(nanoseconds(one.times), one.values) for one in drawn]  # as they are evaluated
-    times = np.unique(np.concatenate([one.times for one in drawn]))
-    before, after = (np.sum([side(one, times) for one in drawn], axis=0) for side in (Lines.before, Lines.__call__))
+    drawn = [Lines(nanoseconds(part.times), part.values) for part in drawn]  # as they are evaluated
+    times = np.unique(np.concatenate([part.times for part in drawn]))
+    before, after = (np.sum([side(part, times) for part in drawn], axis=0) for side in (Lines.before, Lines.__call__))
     jumps = np.abs(after - before) > ROUNDING * np.maximum(np.abs(after), 1.0)
     corners = [
         (time, value)

@@ -21,11 +21,11 @@ def fixed(part: SomePart, defaults: Mapping[str, float] | None = None, /, **valu
         defaults: other start values of the parameters that remain.
     """
     functions = {name: getattr(part, name) for name in (*dir(Estimator), *dir(Law)) if _is_function(part, name)}
-    made = SimpleNamespace(
+    namespace = SimpleNamespace(
         Parameters=with_defaults(without(part.Parameters, values), defaults or {}),
         **{name: _with(values, function) for name, function in functions.items()},
     )
-    return cast(SomePart, made)
+    return cast(SomePart, namespace)
 
 
 def _is_function(part: object, name: str) -> bool:

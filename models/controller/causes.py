@@ -48,15 +48,15 @@ CLOCKS = {row.after: [other.number for other in FAILURES if other.after == row.a
 """The numbers of rows by the time after which these count; a clock runs for all that have the same."""
 
 
-def first_of(found: Mapping[int, bool]) -> int:
+def first_of(failures: Mapping[int, bool]) -> int:
     """The number of the first row of which something is found, that of none where nothing is.
 
     Args:
         found: by the numbers of rows, in their order.
     """
     first = NONE
-    for number in reversed(found):
-        first = where(found[number], number, first)
+    for number in reversed(failures):
+        first = where(failures[number], number, first)
     return first
 
 

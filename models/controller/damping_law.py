@@ -158,14 +158,14 @@ def update(
     phi = motion.phi + samples * (expected.phi - motion.phi)
     T_land = landing_torque(omega + samples * change, phi, motion.phi_B, T_next, grip * p.landing_brake, p)
     withheld = where(landing, T_driver + damping + shape - T_land, x.withheld)
-    left = where(landing, 1.0, 1.0 - T_s / p.t_return)
+    kept = where(landing, 1.0, 1.0 - T_s / p.t_return)
     x = LawState(
         washout=washed_out(x.washout, fed_back, p.omega_w, T_s),
         slow=washed_out(x.slow, T_driver, p.omega_slow, T_s),
         first=washed_out(x.first, T_driver, p.omega_shape, T_s),
         second=washed_out(x.second, x.first, p.omega_shape, T_s),
         afloat=afloat,
-        withheld=left * withheld,
+        withheld=kept * withheld,
     )
     return x, Addition(damping=full, landing=damping - full + shape - withheld)
 

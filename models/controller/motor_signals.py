@@ -87,7 +87,7 @@ def update(
     goes_on = logical_and(logical_and(waited, abs(x.change) > most), abs(change - x.change) <= most)
     jumps = logical_and(ranges, logical_not(logical_or(near, goes_on)))
     movement = where(u.omega_1_meas == x.received, x.movement, 0.0)
-    found = {
+    failures = {
         SPEED_RANGE: logical_not(ranges),
         SPEED_JUMP: jumps,
         SPEED_FROZEN: logical_and(is_movement(movement, T_s, p), abs(omega_1) > p.omega_still),
@@ -96,7 +96,7 @@ def update(
     }
     used = where(logical_and(jumps, trusted), expected, omega_1)
     x = x._replace(alive=1.0 * u.alive, age=age, omega_1=used, received=omega_1, change=change, movement=movement)
-    return x, used, found
+    return x, used, failures
 
 
 def is_movement(movement: float, T_s: float, p: Parameters) -> bool:

@@ -98,8 +98,8 @@ class Supervised(Generic[E, L]):
             T_driver, T_mot: torque that the driver demands and that of the motor, N.m.
         """
         expected = self.estimator.motion(x.estimator, p).omega_1
-        motor, omega_1, found = motor_signals.update(x.motor, u, expected, trust.is_trusted(x.trust), T_S, p)
-        bad = causes.first_of(found) != causes.NONE
+        motor, omega_1, failures = motor_signals.update(x.motor, u, expected, trust.is_trusted(x.trust), T_S, p)
+        bad = causes.first_of(failures) != causes.NONE
         unclear = logical_or(wheel_messages.tells_a_speed(u, p), bad)
         rested = logical_and(standstill.is_complete(x.quiet, p), logical_not(unclear))
         launching, against = launch.update(x.launch, T_driver, motor.loop.T_mot, omega_1, rested, T_S, p)
@@ -109,12 +109,12 @@ class Supervised(Generic[E, L]):
         side = trust.sign_of(direction)
         turned = side * omega_1 < -p.omega_still
         wheel, taken, contradicts = wheel_messages.update(x.wheel, u, omega_1, bad, x.trust.apart > 0.0, side, T_S, p)
-        found |= {
+        failures |= {
             causes.WHEEL_CONTRADICTS: logical_and(contradicts, logical_not(u.slip_control)),
             causes.WRONG_DIRECTION: logical_and(turned, u.direction != 0),
             causes.WRONG_LAUNCH: logical_or(against, logical_and(turned, x.trust.cause == causes.WRONG_LAUNCH)),
         }
-        trusting = trust.update(x.trust._replace(direction=direction), found, turned, T_S, p)
+        trusting = trust.update(x.trust._replace(direction=direction), failures, turned, T_S, p)
         quiet = standstill.quiet_time(x.quiet, standstill.is_still(T_driver, omega_1, p), T_S, p)
 
         rests = standstill.is_complete(quiet, p)

@@ -65,7 +65,7 @@ def sign_of(value: float) -> float:
     return where(value >= 0.0, 1.0, -1.0)
 
 
-def update(x: TrustState, found: Mapping[int, bool], turned: bool, T_s: float, p: Parameters) -> TrustState:
+def update(x: TrustState, failures: Mapping[int, bool], turned: bool, T_s: float, p: Parameters) -> TrustState:
     """The state after one sample, whose direction it has already.
 
     Args:
@@ -73,7 +73,7 @@ def update(x: TrustState, found: Mapping[int, bool], turned: bool, T_s: float, p
         turned: whether the motor turns the other way.
     """
     clocks = {"t_bad": x.clock + T_s, "t_apart": x.apart + T_s}
-    firsts = {after: first_of({number: found[number] for number in rows}) for after, rows in CLOCKS.items()}
+    firsts = {after: first_of({number: failures[number] for number in rows}) for after, rows in CLOCKS.items()}
     lost = NONE
     for after, first in reversed(firsts.items()):
         counts = logical_and(first != NONE, clocks[after] > getattr(p, after)) if after else first != NONE

@@ -19,11 +19,11 @@ from driveline.harness.manoeuvres.road_load import RoadLoad
 from driverecords import channel_rules, plausibility
 from driverecords.channel_rules import (
     ACCELERATION,
-    AROUND,
     BRIEF,
     CLIMB,
     LARGE,
     LONE,
+    NEIGHBOURS,
     SPIKE,
     STEP,
     jumps,
@@ -32,7 +32,7 @@ from driverecords.channel_rules import (
     spikes,
     uncertain,
 )
-from driverecords.channels import Channel, Lack
+from driverecords.channels import Channel, MissingSamples
 from driverecords.drive import Drive, read_drive
 from driverecords.file_units import FileUnit
 from driverecords.findings import MOST_MARKED, Finding, Rule
@@ -265,7 +265,7 @@ def test_a_lone_spike_of_any_channel_is_found(quantity: str, width: int) -> None
     wave = 500.0 + 100.0 * np.sin(np.arange(2000) / 300.0)
     longest = BRIEF / width if width > 1 else 0.1
     k = int(np.argmax(wave))
-    around = np.ptp(np.delete(wave[k - AROUND : k + AROUND + width], slice(AROUND, AROUND + width)))
+    around = np.ptp(np.delete(wave[k - NEIGHBOURS : k + NEIGHBOURS + width], slice(NEIGHBOURS, NEIGHBOURS + width)))
     for size, interval, expected in (
         (1.05 * LARGE * 200.0, longest, 1),
         (0.95 * LARGE * 200.0, longest, 0),
@@ -435,7 +435,7 @@ def test_a_speed_that_is_not_followed() -> None:
 @pytest.mark.parametrize("count", [3, MOST_MARKED, MOST_MARKED + 1, 5000])
 def test_all_samples_that_are_odd_are_marked_or_many_of_them(count: int) -> None:
     at = np.linspace(500, 9_500, count).astype(int)
-    (finding,) = lacking(replace(channel("T_mot", np.zeros(9)), lacks=[Lack(-999.0, 0.1 * at, "line 502")]))
+    (finding,) = lacking(replace(channel("T_mot", np.zeros(9)), missing=[MissingSamples(-999.0, 0.1 * at, "line 502")]))
     assert (finding.samples[0], finding.samples[-1]) == pytest.approx((50.0, 950.0))
     assert finding.samples[0] == finding.time
     assert len(set(finding.samples)) == min(count, MOST_MARKED)

@@ -67,10 +67,10 @@ def _unsettled(task: Task, T_gear: np.ndarray) -> list[tuple[int, int]]:
     begin, length = task.sample(task.reached.settling_time), round(SPAN / T_S)
     pieces = np.lib.stride_tricks.sliding_window_view(T_gear[begin:], length)
     excess = np.ptp(pieces, axis=1) - settled_swing(task) + SWING_RESERVE
-    found: list[tuple[int, int]] = []
+    swings: list[tuple[int, int]] = []
     while excess.max() > TOLERATED:
         worst = int(excess.argmax())
         low, high = (begin + worst + int(k) for k in (pieces[worst].argmin(), pieces[worst].argmax()))
-        found.append((low, high))
+        swings.append((low, high))
         excess[max(worst - length // 4, 0) : worst + length // 4] = 0.0
-    return found
+    return swings

@@ -127,7 +127,7 @@ def _states(sampled: np.ndarray, p: Any) -> np.ndarray:
     omega_2, v = sampled["plant.omega_2"], sampled["plant.v"]
     slip_speed = p.r * omega_2 / p.i - v
     F = sampled["plant.T_rim"] / p.r
-    damping = np.array([vehicle.standstill_damping(each, p) for each in v.tolist()])
+    damping = np.array([vehicle.standstill_damping(speed, p) for speed in v.tolist()])
     u = (F - damping * slip_speed) * p.sigma_s / p.c_slip
     T_mot = sampled["motor.T_mot"]
     return np.column_stack([T_mot, 0.0 * T_mot, sampled["plant.omega_1"], omega_2, sampled["plant.phi"], v, u])

@@ -95,9 +95,9 @@ class Prediction(NamedTuple):
 
     def _after(self, rows: np.ndarray) -> np.ndarray:
         """Over 1 and the torques, of what is over the state at the end of the head too."""
-        early, found = 1 + len(self.T_gear_head), rows[:, N:].copy()
-        found[:, :early] += rows[:, :N] @ self.x[:, :early]
-        return found
+        early, result = 1 + len(self.T_gear_head), rows[:, N:].copy()
+        result[:, :early] += rows[:, :N] @ self.x[:, :early]
+        return result
 
 
 class Predictor:

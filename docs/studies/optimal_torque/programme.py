@@ -121,10 +121,10 @@ def solve(programme: Programme, holds: np.ndarray) -> Solution:
 def reached(programme: Programme, u: np.ndarray) -> tuple[float, float]:
     """The ratio that a torque reference reaches, and by how much in its unit it violates a constraint most."""
     rows = programme.rows
-    found, counts = value(rows.of, u), rows.share > 0.0
+    reached_rows, counts = value(rows.of, u), rows.share > 0.0
     norms = [(cone.counts, float(np.linalg.norm(value(cone.of, u)))) for cone in programme.cones]
-    ratios = [*(found[counts] / rows.share[counts]), *(norm for its, norm in norms if its)]
-    violations = [*(found[~counts] / rows.unit[~counts]), *(norm - 1.0 for its, norm in norms if not its)]
+    ratios = [*(reached_rows[counts] / rows.share[counts]), *(norm for its, norm in norms if its)]
+    violations = [*(reached_rows[~counts] / rows.unit[~counts]), *(norm - 1.0 for its, norm in norms if not its)]
     return float(max([0.0, *ratios])), float(max(violations))
 
 

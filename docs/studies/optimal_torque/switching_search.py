@@ -62,14 +62,14 @@ class Search:
         def solved() -> Solution:
             return solve(programme(self.task, p, contacts, self.car.phi_B, self.metrics, self.active), held)
 
-        found = solved()
+        solution = solved()
         if holding is FINE:
             T_gear = p.T_gear(np.arange(len(self.task.times)))
             for _ in range(ROUNDS):
-                if found.ratio == np.inf or not self.active.violated(self.task, value(T_gear, found.u)):
+                if solution.ratio == np.inf or not self.active.violated(self.task, value(T_gear, solution.u)):
                     break
-                found = solved()
-        return found
+                solution = solved()
+        return solution
 
     def descend(self, contacts: Contacts) -> Contacts:
         """The best contacts that small changes of the switching times lead to."""
@@ -84,16 +84,16 @@ class Search:
     def surround(self, contacts: Contacts) -> list[Found]:
         """All contacts that are not proven to be worse than these by BORDER, as far as they are connected to them."""
         best = self.solve(contacts, FINE).ratio
-        found, seen, left = [], {contacts}, [contacts]
-        while left:
-            at = left.pop()
-            found.append(Found(at, self.solve(at, FINE)))
-            best = min(best, found[-1].solution.ratio)
-            if found[-1].solution.bound < BORDER * best:
+        surroundings, seen, waiting = [], {contacts}, [contacts]
+        while waiting:
+            at = waiting.pop()
+            surroundings.append(Found(at, self.solve(at, FINE)))
+            best = min(best, surroundings[-1].solution.ratio)
+            if surroundings[-1].solution.bound < BORDER * best:
                 new = [c for c in self.around(at, 1) if c not in seen]
                 seen.update(new)
-                left += new
-        return found
+                waiting += new
+        return surroundings
 
     def around(self, contacts: Contacts, stride: int) -> Iterator[Contacts]:
         """Contacts with switching times that are earlier or later by a stride."""

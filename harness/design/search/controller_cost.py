@@ -70,7 +70,7 @@ TERMS: dict[str, tuple[Term, ...]] = {
 """What counts, by the groups of `Costs`."""
 
 
-def costs(runs: Sequence[Run], found: Sequence[Metrics], reference: Sequence[Metrics]) -> Costs:
+def costs(runs: Sequence[Run], metrics: Sequence[Metrics], reference: Sequence[Metrics]) -> Costs:
     """The costs of a controller.
 
     Args:
@@ -80,7 +80,7 @@ def costs(runs: Sequence[Run], found: Sequence[Metrics], reference: Sequence[Met
     def of(terms: tuple[Term, ...]) -> float:
         return _mean(
             (run.weight * term.weight, r)
-            for run, its, other in zip(runs, found, reference, strict=True)
+            for run, its, other in zip(runs, metrics, reference, strict=True)
             for term in terms
             if (r := ratio(term, run, its, other)) is not None
         )
@@ -88,9 +88,9 @@ def costs(runs: Sequence[Run], found: Sequence[Metrics], reference: Sequence[Met
     return Costs(**{group: of(terms) for group, terms in TERMS.items()})
 
 
-def ratio(term: Term, run: Run, found: Metrics, reference: Metrics) -> float | None:
+def ratio(term: Term, run: Run, own: Metrics, reference: Metrics) -> float | None:
     """A term of a run; None if the reference does not have the metric."""
-    value, other = (_magnitude(term.metric, run, metrics) for metrics in (found, reference))
+    value, other = (_magnitude(term.metric, run, metrics) for metrics in (own, reference))
     if isnan(other):
         return None
     return LOST if isnan(value) else (value + term.floor) / (other + term.floor)

@@ -68,10 +68,10 @@ class CostEvaluation:
     def measured(self, trial: Trial) -> Metrics:
         """The metrics of one run."""
         controller, parameters, run = trial
-        given = deviating({**self.car, **parameters}, run.plant, controller, run.deviation)
-        manoeuvre = for_car(run.manoeuvre, given_torque(given))
-        made = self.settings.replace(plant=run.plant, controller=controller, parameters=given, seed=run.seed)
-        return evaluate(simulate(manoeuvre, made), manoeuvre)
+        of_loop = deviating({**self.car, **parameters}, run.plant, controller, run.deviation)
+        manoeuvre = for_car(run.manoeuvre, given_torque(of_loop))
+        settings = self.settings.replace(plant=run.plant, controller=controller, parameters=of_loop, seed=run.seed)
+        return evaluate(simulate(manoeuvre, settings), manoeuvre)
 
     def reference(self) -> dict[str, float]:
         """The gains that are computed for the car."""
@@ -101,16 +101,17 @@ class CostEvaluation:
         with many(measured, workers, executor) as answers:
 
             def metrics(controller: str, candidates: Sequence[Mapping[str, float]]) -> Iterator[list[Metrics]]:
-                found = answers(Trial(controller, candidate, run) for candidate in candidates for run in self.runs)
+                trials = (Trial(controller, candidate, run) for candidate in candidates for run in self.runs)
+                results = answers(trials)
                 for _ in candidates:
-                    yield [next(found) for _ in self.runs]
+                    yield [next(results) for _ in self.runs]
 
             @cache
             def reference() -> list[Metrics]:
                 return next(metrics(REFERENCE, [self.reference()]))
 
             def costs_of(candidates: Sequence[Mapping[str, float]]) -> Iterator[Costs]:
-                for found in metrics(self.controller, candidates):
-                    yield costs(self.runs, found, reference())
+                for metrics_of in metrics(self.controller, candidates):
+                    yield costs(self.runs, metrics_of, reference())
 
             yield costs_of

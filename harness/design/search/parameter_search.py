@@ -93,9 +93,10 @@ class Search:
             strategy = self._strategy(begin, leg.step, population)
             while len(self.visited) < limit and not strategy.stop():
                 candidates_of_leg = strategy.ask()
-                found = self._evaluated([self._space.values(x) for x in candidates_of_leg[: limit - len(self.visited)]])
-                if len(found) == len(candidates_of_leg):
-                    strategy.tell(candidates_of_leg, [each.costs.total(leg.character) for each in found])
+                room = limit - len(self.visited)
+                evaluated = self._evaluated([self._space.values(x) for x in candidates_of_leg[:room]])
+                if len(evaluated) == len(candidates_of_leg):
+                    strategy.tell(candidates_of_leg, [candidate.costs.total(leg.character) for candidate in evaluated])
             population *= 2
 
     def _evaluated(self, candidates: Sequence[Values]) -> list[Evaluated]:
@@ -112,8 +113,8 @@ class Search:
         searched = self._space.searched
         options = {
             "bounds": [
-                [each.coordinate(each.low) for each in searched],
-                [each.coordinate(each.high) for each in searched],
+                [parameter.coordinate(parameter.low) for parameter in searched],
+                [parameter.coordinate(parameter.high) for parameter in searched],
             ],
             "popsize": population,
             "randn": lambda *shape: self._random.standard_normal(shape),
@@ -127,13 +128,13 @@ class Search:
 
 def best(visited: Sequence[Evaluated], character: float) -> Evaluated:
     """The candidate that costs least, for a driver's choice from 0, sport, to 1, comfort."""
-    return min(visited, key=lambda each: each.costs.total(character))
+    return min(visited, key=lambda candidate: candidate.costs.total(character))
 
 
 def front(visited: Sequence[Evaluated]) -> list[Evaluated]:
     """The candidates than which none is better in both comfort and response, from the best in comfort on."""
     kept: list[Evaluated] = []
-    for each in sorted(visited, key=lambda each: (each.costs.comfort, each.costs.response)):
-        if not kept or each.costs.response < kept[-1].costs.response:
-            kept.append(each)
+    for candidate in sorted(visited, key=lambda candidate: (candidate.costs.comfort, candidate.costs.response)):
+        if not kept or candidate.costs.response < kept[-1].costs.response:
+            kept.append(candidate)
     return kept

@@ -32,8 +32,8 @@ def front_drawing(visited: Sequence[Evaluated], space: Space, marked: Mapping[st
     start = visited[0].costs
     comfort, response = _at([*chosen.values(), start])
     costs = [
-        Points(*_at(each.costs for each in visited), "candidates", GREY, 2.0),
-        Curve(*_at(each.costs for each in front(visited)), "front", BLACK, width=0.8, held=True),
+        Points(*_at(candidate.costs for candidate in visited), "candidates", GREY, 2.0),
+        Curve(*_at(candidate.costs for candidate in front(visited)), "front", BLACK, width=0.8, held=True),
         *(Points(*_at([of]), name, color, 7.0) for (name, of), color in zip(chosen.items(), COLOURS, strict=False)),
         Points(*_at([start]), "start", BLACK, 7.0, "square"),
     ]
@@ -41,13 +41,13 @@ def front_drawing(visited: Sequence[Evaluated], space: Space, marked: Mapping[st
     shares = [
         Curve(
             CHOICES,
-            np.array([values[k] / each.start for values in along]),
-            each.name,
+            np.array([values[k] / parameter.start for values in along]),
+            parameter.name,
             COLOURS[k % len(COLOURS)],
             DASHES[k // len(COLOURS) % len(DASHES)],
             held=True,
         )
-        for k, each in enumerate(space.searched)
+        for k, parameter in enumerate(space.searched)
     ]
     left = Axis("comfort: overshoot and jerk", _around(comfort))
     right = Axis("character, from sport to comfort", (0.0, 1.0))
@@ -70,8 +70,8 @@ def plot_front(visited: Sequence[Evaluated], space: Space, character: float, tit
 
 
 def _at(costs: Iterable[Costs]) -> tuple[np.ndarray, np.ndarray]:
-    each = list(costs)
-    return np.array([of.comfort for of in each]), np.array([of.response for of in each])
+    listed = list(costs)
+    return np.array([of.comfort for of in listed]), np.array([of.response for of in listed])
 
 
 def _around(values: np.ndarray) -> tuple[float, float]:
@@ -85,7 +85,7 @@ COSTS = ("cost", "swing", "comfort", "response")
 def choices_table(visited: Sequence[Evaluated], space: Space, characters: Sequence[float]) -> Table:
     """The start and the choices for these characters: what they cost, and their parameters."""
     table = Table(title="costs over those of the computed gains", title_justify="left", box=SIMPLE_HEAD, padding=0)
-    for heading in ("character", *COSTS, *(each.name for each in space.searched)):
+    for heading in ("character", *COSTS, *(parameter.name for parameter in space.searched)):
         table.add_column(heading, justify="right", min_width=8)
     _row(table, "start", 0.5, visited[0])
     for character in characters:
@@ -93,6 +93,6 @@ def choices_table(visited: Sequence[Evaluated], space: Space, characters: Sequen
     return table
 
 
-def _row(table: Table, name: str, character: float, each: Evaluated) -> None:
-    costs = (f"{cost:.3f}" for cost in (each.costs.total(character), *each.costs))
-    table.add_row(name, *costs, *(f"{value:.4g}" for value in each.values))
+def _row(table: Table, name: str, character: float, candidate: Evaluated) -> None:
+    costs = (f"{cost:.3f}" for cost in (candidate.costs.total(character), *candidate.costs))
+    table.add_row(name, *costs, *(f"{value:.4g}" for value in candidate.values))

@@ -55,22 +55,22 @@ class Space(NamedTuple):
     @property
     def start(self) -> tuple[float, ...]:
         """The values of the searched parameters from which the search begins."""
-        return tuple(each.value(0.0) for each in self.searched)
+        return tuple(parameter.value(0.0) for parameter in self.searched)
 
     def coordinates(self, values: Sequence[float]) -> list[float]:
-        return [each.coordinate(value) for each, value in zip(self.searched, values, strict=True)]
+        return [parameter.coordinate(value) for parameter, value in zip(self.searched, values, strict=True)]
 
     def values(self, coordinates: Sequence[float]) -> tuple[float, ...]:
-        return tuple(each.value(float(x)) for each, x in zip(self.searched, coordinates, strict=True))
+        return tuple(parameter.value(float(x)) for parameter, x in zip(self.searched, coordinates, strict=True))
 
     def parameters(self, values: Sequence[float]) -> dict[str, float]:
         """All designed parameters of the controller with these values of the searched ones."""
-        return {**self.computed, **{each.name: value for each, value in zip(self.searched, values, strict=True)}}
+        return {**self.computed, **{p.name: value for p, value in zip(self.searched, values, strict=True)}}
 
 
 def declared_parameters(controller: str) -> dict[str, Variable]:
     """The parameters of a controller by name, as they are declared."""
-    return {each.name: each for each in interface(fmu_of(controller).block) if each.causality == "parameter"}
+    return {v.name: v for v in interface(fmu_of(controller).block) if v.causality == "parameter"}
 
 
 def space(controller: str, car: Mapping[str, Any]) -> Space:
@@ -103,8 +103,8 @@ def space(controller: str, car: Mapping[str, Any]) -> Space:
             f"{Path(controller).stem} has no parameter that is searched: none is declared with a range, as "
             "Real(..., search=(0.5, 5.0))"
         )
-    found = {each.name for each in searched}
-    return Space(tuple(searched), {name: rounded(value) for name, value in here.items() if name not in found})
+    names = {parameter.name for parameter in searched}
+    return Space(tuple(searched), {name: rounded(value) for name, value in here.items() if name not in names})
 
 
 def _computed(car: Mapping[str, Any]) -> tuple[dict[str, float], ...]:

@@ -46,15 +46,15 @@ def tune(
         UserError: there is another search in the folder; or one that cannot be read.
         MissingExtra: the package cma is not installed.
     """
-    known = table([each.name for each in space.searched])
+    known = table([parameter.name for parameter in space.searched])
     systems = {plant: evaluation.system(plant, evaluation.controller) for plant in PLANTS}
     run, file, record = distinguishing(evaluation, space, seed), folder / EVALUATIONS, folder / RECORD
     with (
-        resumable(file, known, record, run, systems, inputs, replace=replace) as made,
+        resumable(file, known, record, run, systems, inputs, replace=replace) as resumed,
         evaluation.opened(workers, executor) as costs_of,
         progress(evaluations, "searching") as done,
     ):
-        return Search(space, costs_of, seed, made.archive, done).run(evaluations)
+        return Search(space, costs_of, seed, resumed.archive, done).run(evaluations)
 
 
 def distinguishing(evaluation: CostEvaluation, space: Space, seed: int) -> dict[str, Any]:
@@ -63,7 +63,7 @@ def distinguishing(evaluation: CostEvaluation, space: Space, seed: int) -> dict[
     return {
         "controller": evaluation.controller,
         "car": dict(evaluation.car),
-        "searched": {each.name: [each.low, each.start, each.high] for each in space.searched},
+        "searched": {parameter.name: [parameter.low, parameter.start, parameter.high] for parameter in space.searched},
         "computed": dict(space.computed),
         "reference": {name: rounded(value) for name, value in evaluation.reference().items()},
         "cost": f"sha256:{sha256(cost.encode()).hexdigest()}",

@@ -53,14 +53,14 @@ class Run(NamedTuple):
 
 def _runs() -> tuple[Run, ...]:
     """All manoeuvres with the car as it is, and a few of them with a slow motor and at corners of the box."""
-    found = [(plant, name, NOMINAL, 1.0) for plant in PLANTS for name in SEARCHED_MANOEUVRES]
-    found += [(plant, "tipin15", SLOW_MOTOR, 0.5) for plant in PLANTS]
+    cases = [(plant, name, NOMINAL, 1.0) for plant in PLANTS for name in SEARCHED_MANOEUVRES]
+    cases += [(plant, "tipin15", SLOW_MOTOR, 0.5) for plant in PLANTS]
     for row in screening():
         high = dict(zip([*BOX, "plant"], row, strict=False))
-        found += [(PLANTS[high["plant"]], name, corner(high), 0.5) for name in AT_CORNERS]
+        cases += [(PLANTS[high["plant"]], name, corner(high), 0.5) for name in AT_CORNERS]
     return tuple(
         Run(plant, name, deviation, SEEDS[k % len(SEEDS)], weight)
-        for k, (plant, name, deviation, weight) in enumerate(found)
+        for k, (plant, name, deviation, weight) in enumerate(cases)
     )
 
 

@@ -66,12 +66,12 @@ def telegrams(values: Mapping[str, Mapping[str, Any]]) -> list[Telegram]:
     Raises:
         WiringError: the bits of a signal do not hold its largest value in its resolution.
     """
-    return [made for place, names in PLACES.items() for made in _of_place(place, FMUS[names[0]].block, values)]
+    return [telegram for place, names in PLACES.items() for telegram in _of_place(place, FMUS[names[0]].block, values)]
 
 
 def _of_place(place: str, block: Block, values: Mapping[str, Mapping[str, Any]]) -> Iterator[Telegram]:
-    given = {name: value for name, value in values.get(place, {}).items() if name in block.Parameters._fields}
-    p = block.Parameters(**given)
+    own = {name: value for name, value in values.get(place, {}).items() if name in block.Parameters._fields}
+    p = block.Parameters(**own)
     for frame in block.frames:
         signals = tuple(_signal(place, block, content, p) for content in frame.contents)
         yield Telegram(frame, frame.cycle(p), f"{place}.{frame.counter}" if frame.counter else None, signals)
@@ -100,13 +100,13 @@ def messages(sent: Iterable[Telegram]) -> list[Message]:
     required("cantools", "the database of the bus", "driveline-damping[recordings]")
     from cantools.database.can import Message
 
-    made = []
+    frames = []
     for telegram in sent:
         frame, signals, first = telegram.frame, [], 0
         for signal in telegram.signals:
             signals.append(_on_bus(signal, first, frame.receiver))
             first += signal.bits
-        made.append(
+        frames.append(
             Message(
                 frame.identifier,
                 frame.name,
@@ -117,7 +117,7 @@ def messages(sent: Iterable[Telegram]) -> list[Message]:
                 cycle_time=max(1, round(1e3 * telegram.cycle)),
             )
         )
-    return made
+    return frames
 
 
 def _on_bus(signal: Signal, first: int, receiver: str) -> Any:
@@ -145,11 +145,11 @@ def _number(value: float) -> float:
     return int(rounded) if rounded == int(rounded) else rounded
 
 
-def database(made: Iterable[Message]) -> Database:
+def database(messages: Iterable[Message]) -> Database:
     """The database of these messages."""
     from cantools.database.can import Database, Node
 
-    every = list(made)
+    every = list(messages)
     nodes = dict.fromkeys(name for message in every for name in (*message.senders, *message.receivers))
     return Database(messages=every, nodes=[Node(name) for name in nodes], version="")
 
@@ -169,6 +169,6 @@ def write_dbc(sent: Iterable[Telegram], path: Path) -> None:
     Raises:
         MissingExtra: cantools is not installed.
     """
-    made = dbc(sent)
+    content = dbc(sent)
     with complete(path) as unfinished:
-        unfinished.write_bytes(made)
+        unfinished.write_bytes(content)

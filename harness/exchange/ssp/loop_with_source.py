@@ -94,9 +94,9 @@ def _packed(bits: list[bool]) -> dict[str, float]:
 
 def _corners(signals: Mapping[str, Lines]) -> list[tuple[float, ...]]:
     """Instant in s and values of all signals where one of them has a corner; where one jumps, before and after it."""
-    found = []
+    corners = []
     for time in sorted({float(time) for signal in signals.values() for time in signal.times}):
         before = tuple(float(signal.before(time)) for signal in signals.values())
         after = tuple(float(signal(time)) for signal in signals.values())
-        found += [(time, *values) for values in dict.fromkeys((before, after))]
-    return found
+        corners += [(time, *values) for values in dict.fromkeys((before, after))]
+    return corners

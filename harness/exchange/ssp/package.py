@@ -11,7 +11,7 @@ from toolground.errors import UserError
 from ...manoeuvres.manoeuvre import Manoeuvre
 from . import mastersim, variables
 from .structure import structure
-from .variables import Value, conversion, typed, units, values
+from .variables import Value, conversion, typed_element, units, values
 from .xml import Element, document, element
 
 
@@ -50,7 +50,7 @@ def package(variants: Mapping[str, Variant], manoeuvre: Manoeuvre) -> dict[str, 
 
 def _files(name: str, variant: Variant, manoeuvre: Manoeuvre, ssd: str) -> dict[str, bytes]:
     tool, fitted = f"driveline-damping {version('driveline-damping')}", variant.fitted
-    found = values(fitted, variant.given)
+    numbers = values(fitted, variant.given)
     sets = {i: f"resources/{i}_{interface.path.stem}.ssv" for i, interface in fitted.interfaces.items()}
     description = f"{manoeuvre.description}, {name}"
     project = f"{mastersim.FOLDER}/{name}.msim"
@@ -66,10 +66,10 @@ def _files(name: str, variant: Variant, manoeuvre: Manoeuvre, ssd: str) -> dict[
         )
     return {
         ssd: structure(name, description, tool, fitted, sets, manoeuvre.duration),
-        **{path: parameter_set(fitted, tool, {"": found[instance]}) for instance, path in sets.items()},
-        f"resources/{name}.ssv": parameter_set(fitted, tool, {f"{i}.": every for i, every in found.items()}),
-        **{f"resources/{one.path.name}": one.path.read_bytes() for one in fitted.interfaces.values()},
-        **({} if converted or is_2 else {project: mastersim.project(fitted, found, manoeuvre.duration)}),
+        **{path: parameter_set(fitted, tool, {"": numbers[instance]}) for instance, path in sets.items()},
+        f"resources/{name}.ssv": parameter_set(fitted, tool, {f"{i}.": every for i, every in numbers.items()}),
+        **{f"resources/{interface.path.name}": interface.path.read_bytes() for interface in fitted.interfaces.values()},
+        **({} if converted or is_2 else {project: mastersim.project(fitted, numbers, manoeuvre.duration)}),
     }
 
 
@@ -97,5 +97,5 @@ def parameter_set(fitted: Fit, tool: str, values: Mapping[str, Sequence[Value]])
 
 def _parameter(prefix: str, value: Value) -> Element:
     described = {"description": value.description} if value.description else {}
-    content = typed("ssv", value.type, value.fmi, value.unit, value.value)
+    content = typed_element("ssv", value.type, value.fmi, value.unit, value.value)
     return element("ssv:Parameter", {"name": f"{prefix}{value.name}", **described}, [content])

@@ -18,7 +18,7 @@ from fmuloop.wiring import Fit
 
 from ...loop.places import STEP_SIZE
 from . import layout
-from .variables import as_it_is, conversion, outputs, their_name, typed, units, version
+from .variables import as_it_is, conversion, outputs, their_name, typed_element, units, version
 from .xml import Element, document, element
 
 OSP, OMS = "com.opensimulationplatform", "org.openmodelica"
@@ -85,14 +85,14 @@ def _component(fitted: Fit, instance: str, shown: Mapping[str, ModelVariable], s
 
 
 def _connector(theirs: str, name: str, variable: ModelVariable, fmi: int) -> Element:
-    made = element(
+    connector = element(
         "ssd:Connector",
         {"name": theirs, "kind": variable.causality, "description": variable.description or name},
-        [typed("ssc", str(variable.type), fmi, unit_of(variable))],
+        [typed_element("ssc", str(variable.type), fmi, unit_of(variable))],
     )
     if name in layout.PLACES:
-        made.append(element("ssd:ConnectorGeometry", layout.PLACES[name]._asdict()))
-    return made
+        connector.append(element("ssd:ConnectorGeometry", layout.PLACES[name]._asdict()))
+    return connector
 
 
 def _connection(fitted: Fit, connection: Connection) -> Element:
@@ -101,13 +101,13 @@ def _connection(fitted: Fit, connection: Connection) -> Element:
         ends[f"{end}Element"] = name.partition(".")[0]
         ends[f"{end}Connector"] = their_name(fitted.system, name)
     factor = conversion(fitted, connection)
-    made = element("ssd:Connection", ends | ({"suppressUnitConversion": True} if factor != 1.0 else {}))
+    line = element("ssd:Connection", ends | ({"suppressUnitConversion": True} if factor != 1.0 else {}))
     if factor != 1.0:
-        made.append(element("ssc:LinearTransformation", {"factor": factor}))
+        line.append(element("ssc:LinearTransformation", {"factor": factor}))
     if corners := layout.corners(connection.source, connection.target):
         along = {f"points{axis}": " ".join(repr(corner[k]) for corner in corners) for k, axis in enumerate("XY")}
-        made.append(element("ssd:ConnectionGeometry", along))
-    return made
+        line.append(element("ssd:ConnectionGeometry", along))
+    return line
 
 
 def _oms_step() -> Element:
@@ -121,5 +121,5 @@ def _experiment(stop_time: float) -> Element:
 
 
 def _annotation(owner: str, root: str, content: Element) -> Element:
-    made = element("ssc:Annotation", {"type": owner}, [element(root, children=[content])])
-    return element("ssd:Annotations", children=[made])
+    annotation = element("ssc:Annotation", {"type": owner}, [element(root, children=[content])])
+    return element("ssd:Annotations", children=[annotation])

@@ -32,23 +32,23 @@ class Value(NamedTuple):
     fmi: int
 
 
-def values(fitted: Fit, given: Mapping[str, float]) -> dict[str, list[Value]]:
+def values(fitted: Fit, assigned: Mapping[str, float]) -> dict[str, list[Value]]:
     """The parameters of the FMUs by their instances: all numbers, given or as they start, and what else is given."""
-    found: dict[str, list[Value]] = {instance: [] for instance in fitted.interfaces}
+    values_of: dict[str, list[Value]] = {instance: [] for instance in fitted.interfaces}
     for instance, interface in fitted.interfaces.items():
         for ours, variable in interface.variables.items():
             if variable.causality != "parameter":
                 continue
             name, kind = f"{instance}.{ours}", type_of(variable)
             start = variable.start if kind in NUMBERS else None
-            value = given[name] / _factor(fitted, name) if name in given else start
+            value = assigned[name] / _factor(fitted, name) if name in assigned else start
             if value is not None:
                 as_typed = {"Real": float, "Integer": int, "Boolean": bool}[kind](value)
                 own = as_it_is(fitted, name)
-                found[instance].append(
+                values_of[instance].append(
                     Value(str(own.name), kind, as_typed, unit_of(own), own.description, interface.fmi)
                 )
-    return found
+    return values_of
 
 
 def their_name(system: System, name: str) -> str:
@@ -82,7 +82,7 @@ OF_FMI3 = {"Real": "Float64", "Integer": "Int32"}
 """What SSP 2.0 calls the types of FMUs of FMI 3.0."""
 
 
-def typed(prefix: str, kind: str, fmi: int, unit: str | None, value: object = None) -> Element:
+def typed_element(prefix: str, kind: str, fmi: int, unit: str | None, value: object = None) -> Element:
     """The element of a type, such as `ssc:Real`, with its unit and with a value if there is one."""
     attributes = {} if value is None else {"value": value}
     name = OF_FMI3.get(kind, kind) if fmi == 3 else kind
@@ -97,15 +97,15 @@ def units(prefix: str, fitted: Fit, names: Iterable[str | None]) -> list[Element
         for unit in interface.description.unitDefinitions
     }
     used = sorted({name for name in names if name})
-    made = [element("ssc:Unit", {"name": name}, [_base(bases.get(name))]) for name in used]
-    return [element(f"{prefix}:Units", children=made)] if made else []
+    elements = [element("ssc:Unit", {"name": name}, [_base(bases.get(name))]) for name in used]
+    return [element(f"{prefix}:Units", children=elements)] if elements else []
 
 
 def _base(unit: BaseUnit | None) -> Element:
     names = ("kg", "m", "s", "A", "K", "mol", "cd", "rad", "factor", "offset")
     usual = BaseUnit()
-    given = {name: getattr(unit or usual, name) for name in names}
-    return element("ssc:BaseUnit", {name: value for name, value in given.items() if value != getattr(usual, name)})
+    exponents = {name: getattr(unit or usual, name) for name in names}
+    return element("ssc:BaseUnit", {name: value for name, value in exponents.items() if value != getattr(usual, name)})
 
 
 def outputs(fitted: Fit) -> dict[str, ModelVariable]:

@@ -19,9 +19,9 @@ Element = ElementTree.Element
 
 def element(name: str, attributes: Mapping[str, object] | None = None, children: Iterable[Element] = ()) -> Element:
     """An element such as `ssd:System`; numbers are written so that they are read back the same."""
-    made = Element(_qualified(name), {key: _text(value) for key, value in (attributes or {}).items()})
-    made.extend(children)
-    return made
+    node = Element(_qualified(name), {key: _text(value) for key, value in (attributes or {}).items()})
+    node.extend(children)
+    return node
 
 
 def document(root: Element) -> bytes:

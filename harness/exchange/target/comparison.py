@@ -81,7 +81,7 @@ def compare(programs: Programs, case: Case, outputs: Sequence[str]) -> Compariso
     return Comparison(
         case=case,
         samples=len(there),
-        differing=sum(one.bytes != other.bytes for one, other in zip(target, single, strict=True)),
+        differing=sum(a.bytes != b.bytes for a, b in zip(target, single, strict=True)),
         T_ref=float(distance[:, T_ref].max()),
         T_gear_hat=float(distance[:, T_gear_hat].max()),
         margin=float((distance[:, T_ref] / allowed).max()),
@@ -121,7 +121,7 @@ def in_loop(
     with TemporaryDirectory(prefix="driveline-") as temporary:
         path = build_on_target(CONTROLLERS[controller], Path(temporary))
         T_max = largest_torque(settings)
-        for manoeuvre in (for_car(each, T_max) for each in USUAL_MANOEUVRES):
+        for manoeuvre in (for_car(usual, T_max) for usual in USUAL_MANOEUVRES):
             there = at_samples(simulate(manoeuvre, settings, controller=path))
             here = at_samples(simulate(manoeuvre, settings))
             off_line = responses(programs.single(), fed(manoeuvre, there, system, names))

@@ -39,9 +39,9 @@ class Record(NamedTuple):
     def passed(self) -> bool:
         """Whether no bit differs, and the torque of every case that the loop gave is as near to double precision as it
         must."""
-        near = all(each.margin <= 1.0 or each.case.drawn for each in self.comparisons)
-        same = not any(each.differing for each in (*self.comparisons, *self.loops))
-        kept = self.schedule.missed == 0 and all(each.finite for each in self.comparisons)
+        near = all(comparison.margin <= 1.0 or comparison.case.drawn for comparison in self.comparisons)
+        same = not any(part.differing for part in (*self.comparisons, *self.loops))
+        kept = self.schedule.missed == 0 and all(comparison.finite for comparison in self.comparisons)
         return near and same and kept
 
 
@@ -68,58 +68,58 @@ def record(settings: Settings) -> Record:
     values |= {name: settings.parameters.get(f"controller.{name}", value) for name, value in values.items()}
     fmu = CONTROLLERS[controller].started_with(values)
     sources = target_sources(fmu, SINGLE)
-    with progress(STEPS, "target") as done, programs(fmu) as made:
+    with progress(STEPS, "target") as done, programs(fmu) as binaries:
         cases = _counted(cases_in_loop(system, interfaces, inputs, settings), done, 0)
         first = len(cases)
         cases += random_inputs(cases, settings.seed)
-        comparisons = _counted((compare(made, case, outputs) for case in cases), done, first)
-        states = np.concatenate([each.states for each in comparisons if not each.case.drawn])
-        comparisons.append(compare(made, random_states(cases[-2], states, settings.seed), outputs))
-        loops = _counted(in_loop(made, controller, system, inputs, settings), done, first + len(comparisons))
-        return Record(comparisons, loops, schedule(sources), size_of(made))
+        comparisons = _counted((compare(binaries, case, outputs) for case in cases), done, first)
+        states = np.concatenate([comparison.states for comparison in comparisons if not comparison.case.drawn])
+        comparisons.append(compare(binaries, random_states(cases[-2], states, settings.seed), outputs))
+        loops = _counted(in_loop(binaries, controller, system, inputs, settings), done, first + len(comparisons))
+        return Record(comparisons, loops, schedule(sources), size_of(binaries))
 
 
 def _counted(pieces: Iterable[Any], done: Callable[[float], None], first: int) -> list[Any]:
     """All of them; the progress shows each, from so many on."""
-    found: list[Any] = []
+    counted: list[Any] = []
     for count, piece in enumerate(pieces, first):
         done(count)
-        found.append(piece)
-    return found
+        counted.append(piece)
+    return counted
 
 
-def announce(found: Record) -> None:
+def announce(record: Record) -> None:
     """Prints a line for each case, off-line and in the loop."""
-    for each in found.comparisons:
+    for of in record.comparisons:
         print(
-            f"{each.case.name}: {each.samples} samples, {each.differing} with a differing bit, T_ref within "
-            f"{each.T_ref:.2g} N.m of double precision, at most {each.instructions[1]} instructions"
+            f"{of.case.name}: {of.samples} samples, {of.differing} with a differing bit, T_ref within "
+            f"{of.T_ref:.2g} N.m of double precision, at most {of.instructions[1]} instructions"
         )
-    for each in found.loops:
+    for drive in record.loops:
         print(
-            f"{each.manoeuvre} in the loop: {each.differing} samples differ from off-line, T_ref within "
-            f"{each.T_ref:.2g} N.m of the loop in double precision"
+            f"{drive.manoeuvre} in the loop: {drive.differing} samples differ from off-line, T_ref within "
+            f"{drive.T_ref:.2g} N.m of the loop in double precision"
         )
 
 
-def numbers(found: Record) -> dict[str, dict[str, Any]]:
+def numbers(record: Record) -> dict[str, dict[str, Any]]:
     """What was found as tables: rows by name, each with a value by column.
 
     Torques are in N.m, memory in bytes, costs `driven` and `drawn` the most instructions of a sample. For the rest see
     `Comparison`, `InLoop`, `Size` and `Schedule`.
     """
-    most = {each.case.name: each.instructions[1] for each in found.comparisons}
-    drawn = {each.case.name for each in found.comparisons if each.case.drawn}
+    most = {of.case.name: of.instructions[1] for of in record.comparisons}
+    drawn = {of.case.name for of in record.comparisons if of.case.drawn}
     return {
-        "cases": {each.case.name: _columns(each, *Comparison._fields[1:8]) for each in found.comparisons},
-        "loops": {each.manoeuvre: _columns(each, *InLoop._fields[1:]) for each in found.loops},
+        "cases": {of.case.name: _columns(of, *Comparison._fields[1:8]) for of in record.comparisons},
+        "loops": {drive.manoeuvre: _columns(drive, *InLoop._fields[1:]) for drive in record.loops},
         "costs": {
             "driven": max(count for name, count in most.items() if name not in drawn),
             "drawn": max((most[name] for name in drawn), default=0),
-            "stack_used": max(each.stack for each in found.comparisons),
-            **found.size._asdict(),
+            "stack_used": max(of.stack for of in record.comparisons),
+            **record.size._asdict(),
         },
-        "schedule": found.schedule._asdict(),
+        "schedule": record.schedule._asdict(),
     }
 
 
@@ -127,13 +127,13 @@ def _columns(row: Any, *names: str) -> dict[str, Any]:
     return {name: getattr(row, name) for name in names}
 
 
-def write(found: Record, folder: Path) -> list[Path]:
+def write(record: Record, folder: Path) -> list[Path]:
     """Writes the numbers and the cases; returns the files."""
     files = [folder / NUMBERS]
-    write_text(json.dumps(numbers(found), indent=2) + "\n", files[0])
-    for each in found.comparisons:
-        files.append(folder / f"{each.case.name.replace(' ', '_')}.csv")
-        write_csv(signals(each), files[-1])
+    write_text(json.dumps(numbers(record), indent=2) + "\n", files[0])
+    for comparison in record.comparisons:
+        files.append(folder / f"{comparison.case.name.replace(' ', '_')}.csv")
+        write_csv(signals(comparison), files[-1])
     return files
 
 

@@ -67,10 +67,10 @@ def replaced(row: int, column: int, cell: str, separator: str = ",", **how: obje
     """With another text in one cell."""
 
     def line(k: int) -> str:
-        found = cells(k)
+        row_cells = cells(k)
         if k == row:
-            found[column] = cell
-        return separator.join(found)
+            row_cells[column] = cell
+        return separator.join(row_cells)
 
     return text(line, separator.join(NAMES), **how)  # type: ignore[arg-type]
 

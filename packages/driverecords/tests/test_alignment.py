@@ -23,16 +23,16 @@ def wave(t: np.ndarray) -> np.ndarray:
 def test_what_was_sampled_together_is_left_as_it_is() -> None:
     values = np.random.default_rng(1).standard_normal((2, len(FAST)))
     channels = {"omega_1": channel("omega_1", FAST, values[0]), "T_mot": channel("T_mot", FAST, values[1])}
-    time, found = aligned(channels, "omega_1")
+    time, on_base = aligned(channels, "omega_1")
     assert time is FAST
-    assert found["T_mot"] is channels["T_mot"].values
+    assert on_base["T_mot"] is channels["T_mot"].values
 
 
 def test_a_slower_channel_is_interpolated_by_cubics_and_not_by_lines() -> None:
     channels = {"omega_1": channel("omega_1", FAST, wave(FAST)), "T_load": channel("T_load", SLOW, wave(SLOW))}
-    time, found = aligned(channels, "omega_1")
+    time, on_base = aligned(channels, "omega_1")
     inner = slice(3, -3)
-    cubic = np.abs(found["T_load"] - wave(time))[inner].max()
+    cubic = np.abs(on_base["T_load"] - wave(time))[inner].max()
     lines = np.abs(np.interp(time, SLOW, wave(SLOW)) - wave(time))[inner].max()
     assert cubic < 1e-4 < 3e-3 < lines
 
@@ -50,10 +50,10 @@ def test_a_message_counts_from_the_sample_at_which_it_has_arrived() -> None:
         "omega_1": channel("omega_1", FAST, wave(FAST)),
         "omega_2": channel("omega_2", messages, np.array([1.0, 2.0, 3.0, 4.0])),
     }
-    time, found = aligned(channels, "omega_1", received={"omega_2"})
+    time, on_base = aligned(channels, "omega_1", received={"omega_2"})
     assert len(time) == len(FAST), "the last message holds to the end"
     for t, value in ((0.0, 1.0), (0.098, 1.0), (0.1, 2.0), (0.102, 3.0), (0.298, 3.0), (0.3, 4.0), (0.998, 4.0)):
-        assert found["omega_2"][round(t / 0.002)] == value, t
+        assert on_base["omega_2"][round(t / 0.002)] == value, t
 
 
 def test_channels_that_were_not_recorded_together_are_refused() -> None:

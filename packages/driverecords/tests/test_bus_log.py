@@ -72,11 +72,11 @@ def write(folder: Path, frames: Iterable, ending: str = "blf") -> tuple[Path, li
 @pytest.mark.parametrize("ending", ["blf", "asc"])
 def test_a_drive_is_read_from_a_log(tmp_path: Path, ending: str) -> None:
     path, databases = write(tmp_path, drive(), ending)
-    found = read_drive(path, databases=databases)
-    np.testing.assert_allclose(found.T_mot, 20.0 + np.round(100.0 * found.time), rtol=1e-12)
-    np.testing.assert_allclose(found.v, 10.0)
-    assert found.elevation is not None
-    np.testing.assert_allclose(found.elevation[::4], 500.0 + 50.0 * found.time[::4] - 0.1, atol=0.11)
+    recording = read_drive(path, databases=databases)
+    np.testing.assert_allclose(recording.T_mot, 20.0 + np.round(100.0 * recording.time), rtol=1e-12)
+    np.testing.assert_allclose(recording.v, 10.0)
+    assert recording.elevation is not None
+    np.testing.assert_allclose(recording.elevation[::4], 500.0 + 50.0 * recording.time[::4] - 0.1, atol=0.11)
 
 
 def test_a_table_whose_first_column_is_a_date_is_no_log(tmp_path: Path) -> None:
@@ -105,8 +105,8 @@ def test_signals_of_two_channels_are_told_apart(tmp_path: Path) -> None:
     ]
     with pytest.raises(RecordingError, match=r"could each be T_mot .*--column T_mot="):
         Channels(path, databases=databases).read("T_mot")
-    given = {"T_mot": "Motor_Torque, Motor, channel 1"}
-    assert len(Channels(path, given, databases=databases).read("T_mot")["T_mot"].time) == 50
+    columns = {"T_mot": "Motor_Torque, Motor, channel 1"}
+    assert len(Channels(path, columns, databases=databases).read("T_mot")["T_mot"].time) == 50
 
 
 def test_error_frames_and_remote_frames_hold_no_signals(tmp_path: Path) -> None:
@@ -279,9 +279,9 @@ DATABASES = {
 def test_a_database_of_every_tool_is_read(tmp_path: Path, name: str) -> None:
     path, databases = write(tmp_path, drive())
     databases[0].write_bytes(DATABASES[name])
-    found = read_drive(path, databases=databases)
-    np.testing.assert_allclose(found.T_mot, 20.0 + np.round(100.0 * found.time), rtol=1e-12)
-    np.testing.assert_allclose(found.v, 10.0)
+    recording = read_drive(path, databases=databases)
+    np.testing.assert_allclose(recording.T_mot, 20.0 + np.round(100.0 * recording.time), rtol=1e-12)
+    np.testing.assert_allclose(recording.v, 10.0)
 
 
 @pytest.mark.parametrize(
@@ -319,6 +319,6 @@ def test_what_two_databases_declare_differently_is_refused_with_both_names(
 def test_a_named_value_of_a_signal_with_a_unit_is_none(tmp_path: Path) -> None:
     path, databases = write(tmp_path, drive())
     databases[0].write_text(DBC + 'VAL_ 256 Motor_Torque 500 "SNA" 300 "Init" ;\n', encoding="ascii")
-    found = Channels(path, databases=databases).read("T_mot")["T_mot"]
-    np.testing.assert_allclose(found.values, 20.0 + np.round(100.0 * found.time))  # they are filled
-    assert [lack.times.tolist() for lack in found.lacks] == [pytest.approx([0.1, 0.3], abs=1e-6)]
+    torque = Channels(path, databases=databases).read("T_mot")["T_mot"]
+    np.testing.assert_allclose(torque.values, 20.0 + np.round(100.0 * torque.time))  # they are filled
+    assert [missing.times.tolist() for missing in torque.missing] == [pytest.approx([0.1, 0.3], abs=1e-6)]

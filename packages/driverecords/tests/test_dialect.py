@@ -17,8 +17,8 @@ def dialect(above: str, rows: str = ROWS, names: tuple[str, ...] = NAMES) -> Dia
 @pytest.mark.parametrize("short", ["100", "100;200", "100;200;;"])
 def test_rows_of_half_the_usual_cells_are_no_numbers(short: str) -> None:
     """However many there are, as a preamble has: rate, date, number of the bench."""
-    found = dialect(f"{short}\n{short}\n")
-    assert (found.names, found.names_line, found.first_line) == (NAMES, 3, 4)
+    result = dialect(f"{short}\n{short}\n")
+    assert (result.names, result.names_line, result.first_line) == (NAMES, 3, 4)
 
 
 @pytest.mark.parametrize(("cells", "first"), [(2, 4), (3, 2)])
@@ -27,8 +27,8 @@ def test_rows_of_more_than_half_the_usual_cells_are_numbers(cells: int, first: i
     names, row = ("Time", "A", "B", "C", "D"), "1;2;3;4;5"
     short = ";".join(row.split(";")[:cells])
     text = f"Time;A;B;C;D\n{short}\n{short}\n" + f"{row}\n" * 5
-    found = dialect_of(text, Path("drive.csv"))
-    assert (found.names, found.names_line, found.first_line) == (names, 1, 2), "numbers begin below the names"
+    result = dialect_of(text, Path("drive.csv"))
+    assert (result.names, result.names_line, result.first_line) == (names, 1, 2), "numbers begin below the names"
     above = f"{short}\n{short}\n{';'.join(names)}\n" + f"{row}\n" * 5
     if first == 4:
         assert dialect_of(above, Path("drive.csv")).first_line == 4
@@ -40,8 +40,8 @@ def test_rows_of_more_than_half_the_usual_cells_are_numbers(cells: int, first: i
 @pytest.mark.parametrize(("row", "are_numbers"), [("1;2;x;y", True), ("1;x;y;z", False)])
 def test_half_of_the_cells_of_a_row_of_numbers_are_numbers(row: str, are_numbers: bool) -> None:
     rows = f"{row}\n" * 2 + ROWS
-    found = dialect("", rows)
-    assert found.first_line == 2, "a row with a number in it is no row of names"
+    result = dialect("", rows)
+    assert result.first_line == 2, "a row with a number in it is no row of names"
     text = f"{row}\n" * 2 + f"{';'.join(NAMES)}\n{ROWS}"
     if are_numbers:
         with pytest.raises(Exception, match="there is no line of names above the numbers"):
@@ -61,9 +61,9 @@ def test_one_row_of_numbers_above_the_names_is_no_beginning() -> None:
 )
 def test_beside_a_time_two_thirds_of_the_units_may_be_none(units: str, are_units: bool) -> None:
     names = NAMES[: units.count(";") + 1]
-    found = dialect("", f"{units}\n" + f"{';'.join('1234'[: len(names)])}\n" * 6, names)
+    result = dialect("", f"{units}\n" + f"{';'.join('1234'[: len(names)])}\n" * 6, names)
     cells = tuple(units.split(";"))
-    assert (found.names, found.units) == ((names, cells) if are_units else (cells, ())), "the last row is of names"
+    assert (result.names, result.units) == ((names, cells) if are_units else (cells, ())), "the last row is of names"
 
 
 @pytest.mark.parametrize(

@@ -28,9 +28,11 @@ def as_read(drive: Columns) -> Drive:
     return Drive("drive", time, v / 3.6, elevation, T_mot, {})
 
 
-def require_same(found: Drive, expected: Drive) -> None:
+def require_same(recording: Drive, expected: Drive) -> None:
     for name in ("time", "v", "elevation", "T_mot"):
-        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-9, atol=1e-9, err_msg=name)
+        np.testing.assert_allclose(
+            getattr(recording, name), getattr(expected, name), rtol=1e-9, atol=1e-9, err_msg=name
+        )
 
 
 @together("variant", TEXTS)
@@ -58,9 +60,9 @@ def test_a_bad_cell_is_named_with_its_line_in_every_text(tmp_path: Path, variant
         with pytest.raises(RecordingError, match=rf"line {len(lines) - 3}, column .?[Vv]elocity.*: {cell} is"):
             read_drive(path)
     else:
-        found = read_drive(path)
-        assert len(found.time) == 200
-        assert [lack.place for lack in found.channels["v"].lacks] == [f"line {len(lines) - 3}"]
+        recording = read_drive(path)
+        assert len(recording.time) == 200
+        assert [missing.place for missing in recording.channels["v"].missing] == [f"line {len(lines) - 3}"]
 
 
 @pytest.mark.parametrize("name", ["drive.parquet", "drive.feather"])
@@ -78,11 +80,11 @@ def test_what_the_file_is_called_does_not_matter(tmp_path: Path) -> None:
 
 def test_groups_of_an_mdf_file_with_other_rates_come_onto_the_time_of_the_torque(tmp_path: Path) -> None:
     write_mdf(DRIVE, tmp_path / "drive.mf4")
-    found, expected = read_drive(tmp_path / "drive.mf4"), as_read(DRIVE)
-    assert found.time.tolist() == expected.time[:-1].tolist(), "the time that both groups have in common"
-    assert found.T_mot.tolist() == expected.T_mot[:-1].tolist(), "nothing is done to the base"
-    np.testing.assert_allclose(found.v[::2], expected.v[:-1:2], rtol=1e-14, err_msg="nor to a sample that is there")
-    np.testing.assert_allclose(found.v, expected.v[:-1], atol=3e-3)  # between them, rounded to 0.01 km/h
+    recording, expected = read_drive(tmp_path / "drive.mf4"), as_read(DRIVE)
+    assert recording.time.tolist() == expected.time[:-1].tolist(), "the time that both groups have in common"
+    assert recording.T_mot.tolist() == expected.T_mot[:-1].tolist(), "nothing is done to the base"
+    np.testing.assert_allclose(recording.v[::2], expected.v[:-1:2], rtol=1e-14, err_msg="nor to a sample that is there")
+    np.testing.assert_allclose(recording.v, expected.v[:-1], atol=3e-3)  # between them, rounded to 0.01 km/h
 
 
 def test_a_bad_value_of_a_binary_file_is_named_with_its_row(tmp_path: Path) -> None:
@@ -162,10 +164,10 @@ def test_what_a_conversion_says_to_be_no_value_is_none(tmp_path: Path, name: str
         torque = Signal(DRIVE["Motor Torque"][0], time, name="Motor Torque", unit="Nm")
         file.append([Signal(raw, time, name="Velocity", unit="km/h", conversion=NO_VALUE[name]), torque])
         path = file.save(tmp_path / "drive.mf4", overwrite=True)
-    found = read_drive(path)
-    assert found.time.tolist() == time[50:].tolist()
-    np.testing.assert_allclose(found.v, DRIVE["Velocity"][0][50:] / 3.6, atol=2e-2)
-    assert sum(len(lack.times) for lack in found.channels["v"].lacks) == (51 if "bits" in name else 1)
+    recording = read_drive(path)
+    assert recording.time.tolist() == time[50:].tolist()
+    np.testing.assert_allclose(recording.v, DRIVE["Velocity"][0][50:] / 3.6, atol=2e-2)
+    assert sum(len(missing.times) for missing in recording.channels["v"].missing) == (51 if "bits" in name else 1)
 
 
 @pytest.mark.parametrize(("name", "package"), [("drive.parquet", "pyarrow.parquet"), ("drive.mf4", "asammdf")])

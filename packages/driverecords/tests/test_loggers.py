@@ -64,6 +64,6 @@ def test_what_loggers_write_where_there_is_no_value() -> None:
 @together("name", ["a time for each channel", "a time of day for each channel"])
 def test_a_channel_has_the_time_that_stands_before_it(tmp_path: Path, name: str) -> None:
     (path := tmp_path / "drive.csv").write_bytes(HABITS[name].content)
-    found = Channels(path).read("T_mot", "v")
-    np.testing.assert_allclose(found["v"].time, TIME, atol=1e-9)
-    np.testing.assert_allclose(found["T_mot"].time, TIME + 0.03, atol=1e-9)
+    channels = Channels(path).read("T_mot", "v")
+    np.testing.assert_allclose(channels["v"].time, TIME, atol=1e-9)
+    np.testing.assert_allclose(channels["T_mot"].time, TIME + 0.03, atol=1e-9)

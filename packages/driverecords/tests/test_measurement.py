@@ -23,9 +23,9 @@ MOTOR = {
 WHEEL, LOAD = drive()["omega_2"] / RATIO, -RATIO * drive()["T_load"]
 
 
-def require_same(found: Measurement, *names: str) -> None:
+def require_same(recording: Measurement, *names: str) -> None:
     for name in names:
-        np.testing.assert_allclose(getattr(found, name), drive()[name], rtol=1e-8, atol=1e-7, err_msg=name)
+        np.testing.assert_allclose(getattr(recording, name), drive()[name], rtol=1e-8, atol=1e-7, err_msg=name)
 
 
 @pytest.mark.parametrize(
@@ -39,10 +39,10 @@ def require_same(found: Measurement, *names: str) -> None:
     ],
 )
 def test_the_speed_of_the_wheels_in_every_form(write: Write, wheels: dict[str, np.ndarray]) -> None:
-    found = read_measurement(write(MOTOR | wheels), RATIO, RADIUS)
-    require_same(found, "time", "T_mot", "omega_1", "omega_2")
-    assert (found.T_load, found.valid, found.counter) == (None, None, None)
-    assert found.columns["omega_2"] == " and ".join(wheels)
+    recording = read_measurement(write(MOTOR | wheels), RATIO, RADIUS)
+    require_same(recording, "time", "T_mot", "omega_1", "omega_2")
+    assert (recording.T_load, recording.valid, recording.counter) == (None, None, None)
+    assert recording.columns["omega_2"] == " and ".join(wheels)
 
 
 @pytest.mark.parametrize(
@@ -57,12 +57,12 @@ def test_it_is_known_how_the_file_writes_the_wheel_speed(
     write: Write, heading: str, factor: float, message: str
 ) -> None:
     column = drive()["omega_2"] / factor
-    found = read_measurement(write(MOTOR | {heading: column}), RATIO, RADIUS)
-    file_unit = found.file_units["omega_2"]
+    recording = read_measurement(write(MOTOR | {heading: column}), RATIO, RADIUS)
+    file_unit = recording.file_units["omega_2"]
     assert str(file_unit) == message
-    assert found.omega_2 / file_unit.factor == pytest.approx(column)
-    assert found.omega_1 / found.file_units["omega_1"].factor == pytest.approx(MOTOR["Motor Speed [rpm]"])
-    assert str(found.file_units["T_mot"]) == "in Nm"
+    assert recording.omega_2 / file_unit.factor == pytest.approx(column)
+    assert recording.omega_1 / recording.file_units["omega_1"].factor == pytest.approx(MOTOR["Motor Speed [rpm]"])
+    assert str(recording.file_units["T_mot"]) == "in Nm"
 
 
 @pytest.mark.parametrize(
@@ -75,10 +75,10 @@ def test_it_is_known_how_the_file_writes_the_wheel_speed(
 def test_it_is_known_how_the_file_writes_the_load(write: Write, heading: str, factor: float, message: str) -> None:
     column = drive()["T_load"] / factor
     path = write(MOTOR | {"Wheel Speed [rad/s]": WHEEL, heading: column})
-    found = read_measurement(path, RATIO, RADIUS)
-    assert str(found.file_units["T_load"]) == message
-    assert found.T_load is not None
-    assert abs(found.T_load) / found.file_units["T_load"].factor == pytest.approx(abs(column))
+    recording = read_measurement(path, RATIO, RADIUS)
+    assert str(recording.file_units["T_load"]) == message
+    assert recording.T_load is not None
+    assert abs(recording.T_load) / recording.file_units["T_load"].factor == pytest.approx(abs(column))
 
 
 @pytest.mark.parametrize(
@@ -97,21 +97,21 @@ def test_measurement_wheels_show_a_driving_torque_as_positive(write: Write, whee
 def test_validity_and_counter_of_the_messages(write: Write) -> None:
     count = np.floor(drive()["time"] / 0.02)
     path = write(MOTOR | {"Wheel Speed [rad/s]": WHEEL, "Wheel Speed Valid": count % 2, "Wheel Speed Counter": count})
-    found = read_measurement(path, RATIO, RADIUS)
-    assert found.valid is not None
-    assert found.valid.dtype == bool
-    assert found.counter is not None
-    np.testing.assert_array_equal(found.valid, count % 2 == 1.0)
-    np.testing.assert_array_equal(found.counter, count)
+    recording = read_measurement(path, RATIO, RADIUS)
+    assert recording.valid is not None
+    assert recording.valid.dtype == bool
+    assert recording.counter is not None
+    np.testing.assert_array_equal(recording.valid, count % 2 == 1.0)
+    np.testing.assert_array_equal(recording.counter, count)
 
 
 @pytest.mark.parametrize("heading", ["Torque Demand [N.m]", "torque_request_Nm", "M_soll (Nm)", "T_ref [N·m]"])
 def test_the_torque_demand_under_its_names(write: Write, heading: str) -> None:
     columns = MOTOR | {"Wheel Speed [rad/s]": WHEEL}
     assert read_measurement(write(columns), RATIO, RADIUS).T_ref is None
-    found = read_measurement(write(columns | {heading: drive()["T_ref"]}), RATIO, RADIUS)
-    require_same(found, "T_mot", "T_ref")
-    assert found.columns["T_ref"] == heading
+    recording = read_measurement(write(columns | {heading: drive()["T_ref"]}), RATIO, RADIUS)
+    require_same(recording, "T_mot", "T_ref")
+    assert recording.columns["T_ref"] == heading
 
 
 def test_without_a_wheel_speed_it_is_refused(write: Write) -> None:
@@ -123,8 +123,8 @@ def test_columns_that_are_given_with_unit_and_sign(write: Write) -> None:
     path = write(
         {"Time [s]": MOTOR["Time [s]"], "M": -drive()["T_mot"], "n_EM1": MOTOR["Motor Speed [rpm]"], "x [rad/s]": WHEEL}
     )
-    given = {"T_mot": "-M [Nm]", "omega_1": "n_EM1 [rpm]", "omega_wheel": "x"}
-    require_same(read_measurement(path, RATIO, RADIUS, given), "T_mot", "omega_1", "omega_2")
+    headings = {"T_mot": "-M [Nm]", "omega_1": "n_EM1 [rpm]", "omega_wheel": "x"}
+    require_same(read_measurement(path, RATIO, RADIUS, headings), "T_mot", "omega_1", "omega_2")
 
 
 def test_results_of_ours_have_their_units_in_the_file_beside_them(write: Write) -> None:
@@ -167,40 +167,43 @@ def test_a_logger_with_fast_sensors_and_messages_of_the_bus(tmp_path: Path) -> N
     """Motor at 1 kHz, torque of the wheels at 500 Hz with an offset of a sample, speed of the wheels as messages."""
     from asammdf import MDF, Signal
 
-    one, time = drive(10.0, 0.001), drive(10.0, 0.001)["time"]
+    signals, time = drive(10.0, 0.001), drive(10.0, 0.001)["time"]
     late = time[1::2]
     messages = np.arange(0.013, 10.0, 0.02)
-    wheel = np.interp(messages, time, one["omega_2"]) / RATIO
+    wheel = np.interp(messages, time, signals["omega_2"]) / RATIO
     with MDF(version="4.10") as file:
-        motor = [("n", one["omega_1"] / RPM, "1/min", "Motor Speed"), ("T", one["T_mot"], "N·m", "Motor Torque")]
+        motor = [
+            ("n", signals["omega_1"] / RPM, "1/min", "Motor Speed"),
+            ("T", signals["T_mot"], "N·m", "Motor Torque"),
+        ]
         file.append([Signal(x, time, unit=unit, name=name) for _, x, unit, name in motor], common_timebase=True)
-        torque = -RATIO * np.interp(late, time, one["T_load"])
+        torque = -RATIO * np.interp(late, time, signals["T_load"])
         file.append([Signal(torque, late, unit="Nm", name="Wheel Torque")], common_timebase=True)
         file.append([Signal(wheel, messages, unit="rad/s", name="Wheel Speed")], common_timebase=True)
         file.save(tmp_path / "logged.mf4")
-    found = read_measurement(tmp_path / "logged.mf4", RATIO, RADIUS)
+    recording = read_measurement(tmp_path / "logged.mf4", RATIO, RADIUS)
     part = (time >= 0.013) & (time <= late[-1])
-    np.testing.assert_array_equal(found.time, time[part])
-    np.testing.assert_allclose(found.omega_1, one["omega_1"][part], rtol=1e-12)
-    assert found.T_load is not None
-    np.testing.assert_allclose(found.T_load[1:-1], one["T_load"][part][1:-1], atol=2e-3)
-    assert set(np.round(found.omega_2, 6)) <= set(np.round(RATIO * wheel, 6)), "held between messages"
-    assert np.argmax(np.diff(found.omega_2) != 0.0) == 19, "until the next one has come"
+    np.testing.assert_array_equal(recording.time, time[part])
+    np.testing.assert_allclose(recording.omega_1, signals["omega_1"][part], rtol=1e-12)
+    assert recording.T_load is not None
+    np.testing.assert_allclose(recording.T_load[1:-1], signals["T_load"][part][1:-1], atol=2e-3)
+    assert set(np.round(recording.omega_2, 6)) <= set(np.round(RATIO * wheel, 6)), "held between messages"
+    assert np.argmax(np.diff(recording.omega_2) != 0.0) == 19, "until the next one has come"
 
 
 @pytest.mark.parametrize("interval", [0.003, 0.0105])
 def test_a_demand_that_was_sampled_otherwise_is_held_and_not_interpolated(tmp_path: Path, interval: float) -> None:
     from asammdf import MDF, Signal
 
-    one = drive()
+    signals = drive()
     sent = np.arange(0.0, 10.0, interval)
-    demand = one["T_ref"][(sent / 0.002 + 1e-6).astype(int)]
+    demand = signals["T_ref"][(sent / 0.002 + 1e-6).astype(int)]
     with MDF(version="4.10") as file:
         motor = [("omega_1", "rad/s"), ("T_mot", "Nm"), ("omega_2", "rad/s")]
         file.append(
-            [Signal(one[name], one["time"], unit=unit, name=name) for name, unit in motor], common_timebase=True
+            [Signal(signals[name], signals["time"], unit=unit, name=name) for name, unit in motor], common_timebase=True
         )
         file.append([Signal(demand, sent, unit="Nm", name="Torque Demand")], common_timebase=True)
         file.save(tmp_path / "logged.mf4")
-    found = read_measurement(tmp_path / "logged.mf4", RATIO, RADIUS)
-    np.testing.assert_array_equal(found.T_ref, demand[np.searchsorted(sent, found.time, side="right") - 1])
+    recording = read_measurement(tmp_path / "logged.mf4", RATIO, RADIUS)
+    np.testing.assert_array_equal(recording.T_ref, demand[np.searchsorted(sent, recording.time, side="right") - 1])

@@ -58,12 +58,12 @@ def test_every_quantity_has_a_name_of_ours() -> None:
 
 
 def columns() -> dict[str, np.ndarray]:
-    one = drive()
+    signals = drive()
     return {
-        "Time [s]": one["time"],
-        "n_EM1 [rad/s]": one["omega_1"],
-        "M_EM1 [Nm]": one["T_mot"],
-        "omega_2 [rad/s]": one["omega_2"],
+        "Time [s]": signals["time"],
+        "n_EM1 [rad/s]": signals["omega_1"],
+        "M_EM1 [Nm]": signals["T_mot"],
+        "omega_2 [rad/s]": signals["omega_2"],
     }
 
 

@@ -65,13 +65,13 @@ def test_a_channel_that_hardly_varies(name: str) -> None:
 @pytest.mark.parametrize("name", ["omega_1", "T_load"])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_channel_that_was_cut_off_is_named(read: Read, name: str, sign: float) -> None:
-    one = drive()
-    values = sign * one[name]
+    signals = drive()
+    values = sign * signals[name]
     top = int(np.argmax(values[50:-50])) + 50
     for length in (int(CUT_OFF) - 1, int(CUT_OFF)):
         flat = values.copy()
         flat[top : top + length] = values[top]
-        warnings = read(one | {name: sign * flat}).warnings
+        warnings = read(signals | {name: sign * flat}).warnings
         if length < CUT_OFF:
             assert warnings == []
         else:
@@ -80,5 +80,5 @@ def test_a_channel_that_was_cut_off_is_named(read: Read, name: str, sign: float)
 
 
 def test_the_torque_of_a_binary_demand_is_not_cut_off(read: Read) -> None:
-    one = drive()
-    assert read(one | {"T_mot": np.clip(one["T_mot"], -19.0, 39.0)}).warnings == []
+    signals = drive()
+    assert read(signals | {"T_mot": np.clip(signals["T_mot"], -19.0, 39.0)}).warnings == []

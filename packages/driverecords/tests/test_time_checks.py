@@ -13,7 +13,7 @@ from driverecords import channels
 from driverecords.channels import Channels
 from driverecords.quantities import QUANTITIES
 from driverecords.source import Column, RecordingError, Samples
-from driverecords.time_base import Break, clean_pieces, spread, time_breaks
+from driverecords.time_base import Break, clean_pieces, spread_equal_times, time_breaks
 
 JUST = 1e-6
 """How far from the longest step, as a share of it."""
@@ -28,9 +28,9 @@ def with_one_longer_step(steps: float, interval: float = 0.1) -> np.ndarray:
 def test_the_longest_step_that_is_no_gap(gap: float) -> None:
     path = Path("measured.csv")
     assert time_breaks(path, with_one_longer_step(gap * (1.0 - JUST)), "line {}".format, gap) == []
-    (found,) = time_breaks(path, with_one_longer_step(gap * (1.0 + JUST)), "line {}".format, gap)
-    assert re.search(rf"line 10: gap of .* s after 0\.9 s; .*\({gap:g} times the median step", found.problem)
-    assert (found.end, found.begin) == pytest.approx((0.9, 0.9 + 0.1 * gap), rel=1e-5)
+    (gap_found,) = time_breaks(path, with_one_longer_step(gap * (1.0 + JUST)), "line {}".format, gap)
+    assert re.search(rf"line 10: gap of .* s after 0\.9 s; .*\({gap:g} times the median step", gap_found.problem)
+    assert (gap_found.end, gap_found.begin) == pytest.approx((0.9, 0.9 + 0.1 * gap), rel=1e-5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,19 +89,28 @@ def test_messages_may_stay_away_for_longer_unless_they_share_the_time_of_a_senso
 def test_clean_pieces_are_those_between_the_breaks(
     breaks: list[tuple[float, float]], pieces: list[tuple[float, float]]
 ) -> None:
-    assert clean_pieces(0.0, 10.0, [Break(*each, "") for each in breaks]) == pieces
+    assert clean_pieces(0.0, 10.0, [Break(*times, "") for times in breaks]) == pieces
 
 
 @pytest.mark.parametrize("resolution", [0.2, 0.25, 0.5])
 def test_equal_times_at_the_resolution_of_the_clock_are_those_of_a_steady_one(resolution: float) -> None:
     time = 5.0 + 0.1 * np.arange(300)
-    np.testing.assert_allclose(spread(np.floor(time / resolution + 1e-9) * resolution), time, atol=0.02)
+    np.testing.assert_allclose(spread_equal_times(np.floor(time / resolution + 1e-9) * resolution), time, atol=0.02)
 
 
 def test_equal_times_of_a_clock_that_is_not_steady_are_spread_up_to_the_next() -> None:
-    assert spread(np.array([0.0, 0.0, 1.0, 5.0, 5.0, 5.0, 5.0, 6.0])).tolist() == [0, 0.5, 1, 5, 5.25, 5.5, 5.75, 6]
+    assert spread_equal_times(np.array([0.0, 0.0, 1.0, 5.0, 5.0, 5.0, 5.0, 6.0])).tolist() == [
+        0,
+        0.5,
+        1,
+        5,
+        5.25,
+        5.5,
+        5.75,
+        6,
+    ]
 
 
 def test_one_pair_of_equal_times_among_many_is_left() -> None:
     time = np.sort(np.append(0.1 * np.arange(200), 5.0))
-    assert spread(time) is time
+    assert spread_equal_times(time) is time

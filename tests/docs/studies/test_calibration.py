@@ -68,5 +68,5 @@ def test_a_suspect_is_as_wrong_as_its_name_says() -> None:
     assert sum(factor is not None for _, factor in named) >= 4
     for suspect, factor in named:
         if factor:
-            name, value = suspect.given[0]
+            name, value = suspect.parameters[0]
             assert value == pytest.approx(float(factor[1]) * usual[name])

@@ -81,7 +81,7 @@ def test_without_the_load_torque_the_design_swings_as_it_was_found() -> None:
 
 
 def gap(of: Identified) -> tuple[float, float]:
-    (row,) = (row for row in car_file.found(of) if row.name == "phi_B")
+    (row,) = (row for row in car_file.rows_of(of) if row.name == "phi_B")
     return row.value, row.half
 
 

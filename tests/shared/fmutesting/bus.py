@@ -20,13 +20,13 @@ class Operation(NamedTuple):
 
 def operations(data: bytes) -> list[Operation]:
     """Those that stand one behind the other in what a terminal sends."""
-    found = []
+    received = []
     while data:
         code, length = HEAD.unpack_from(data)
         assert HEAD.size <= length <= len(data)
-        found.append(Operation(code, data[HEAD.size : length]))
+        received.append(Operation(code, data[HEAD.size : length]))
         data = data[length:]
-    return found
+    return received
 
 
 def written(operation: Operation) -> bytes:
@@ -101,11 +101,11 @@ class Node:
 
     def flush(self) -> list[Operation]:
         """From event mode into step mode; all that is sent meanwhile."""
-        found = operations(self.sent())
+        received = operations(self.sent())
         while self.update():
-            found += operations(self.sent())
+            received += operations(self.sent())
         self.fmu.enterStepMode()
-        return found
+        return received
 
     def events(self) -> list[Operation]:
         """From step mode through event mode and back."""

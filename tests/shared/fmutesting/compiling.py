@@ -45,10 +45,10 @@ def main(folder: Path, compiler: str, options: list[str]) -> int:
     """Makes the file that the options name, or takes it from the folder; returns the exit code of the compiler."""
     key = _key(compiler, options)
     kept = folder / f"{key}.made"
-    if key and (made := _whole(kept)) is not None:
+    if key and (output_bytes := _whole(kept)) is not None:
         os.utime(kept)
         output = Path(_output(options))
-        output.write_bytes(made)
+        output.write_bytes(output_bytes)
         output.chmod(0o644 if "-c" in options else 0o755)
         return 0
     code = subprocess.run([compiler, *options], check=False).returncode

@@ -23,8 +23,8 @@ class Functions:
     def __init__(self, fmu, folder):
         sources = block_sources(fmu) | {"operators.h": (C_FILES / "operators.h").read_text()}
         traced = trace(fmu.block)
-        self._sizes = {each.name: len(each.values) for each in traced}
-        self._parameters = {each.name: each.arguments.index("p") for each in traced}
+        self._sizes = {function.name: len(function.values) for function in traced}
+        self._parameters = {function.name: function.arguments.index("p") for function in traced}
         exported = "".join(EXPORTED.format(name=name) for name in (*self._sizes, "compute_terms"))
         sources["exported.c"] = f'#include "block.c"\n#include <stddef.h>\n{exported}'
         for name, text in sources.items():
@@ -34,10 +34,10 @@ class Functions:
         self._library = ctypes.CDLL(str(folder / "block.so"))
 
     def __call__(self, name, *arguments):
-        given = [(ctypes.c_double * (len(a) + ROOM))(*map(float, a)) for a in arguments]
-        self._address("compute_terms", 1)(given[self._parameters[name]])
+        vectors = [(ctypes.c_double * (len(a) + ROOM))(*map(float, a)) for a in arguments]
+        self._address("compute_terms", 1)(vectors[self._parameters[name]])
         result = (ctypes.c_double * self._sizes[name])()
-        self._address(name, len(given) + 1)(*given, result)
+        self._address(name, len(vectors) + 1)(*vectors, result)
         return list(result)
 
     def _address(self, name, arguments):

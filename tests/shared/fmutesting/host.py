@@ -37,7 +37,7 @@ FUNCTIONS = "|".join(word for word in WORDS if word.startswith(("fmi3G", "fmi3U"
 def in_words_of_fmi2(text):
     """A message, or the name of a type."""
     known = rf"\b({FUNCTIONS}|fmi3(?=[A-Z])|(Float64|Int32|Enumeration)\b)"
-    return re.sub(known, lambda found: WORDS[found[0]], text)
+    return re.sub(known, lambda match: WORDS[match[0]], text)
 
 
 def of_fmi3(function: str) -> str:
@@ -49,10 +49,10 @@ def of_fmi3(function: str) -> str:
 @cache
 def description(path, _changed) -> Any:
     """The model description of an FMU, read once; types have the names of FMI 2.0."""
-    found: Any = fmpy.read_model_description(str(path))
-    for variable in found.modelVariables if found.fmiVersion == "3.0" else ():
+    model: Any = fmpy.read_model_description(str(path))
+    for variable in model.modelVariables if model.fmiVersion == "3.0" else ():
         variable.type = variable.type if variable.type == "Enumeration" else in_words_of_fmi2(variable.type)
-    return found
+    return model
 
 
 class AsFMU2(FMU3):
@@ -84,7 +84,7 @@ class AsFMU2(FMU3):
     def setRealInputDerivatives(self, vr, order, value):
         """In FMI 3.0 these are variables."""
         assert set(order) <= {1}
-        self.setReal([self.rates[each] for each in vr], value)
+        self.setReal([self.rates[reference] for reference in vr], value)
 
 
 class FMU3AsFMU2(AsFMU2, FMU3Slave):
@@ -192,8 +192,8 @@ def instance(folder: str, name: str) -> Any:
     """A fixture: an instance of the FMU in the folder that another fixture makes."""
 
     @pytest.fixture
-    def made(request, tmp_path):
+    def fixture(request, tmp_path):
         with opened(request.getfixturevalue(folder) / f"{name}.fmu", tmp_path) as host:
             yield host
 
-    return made
+    return fixture

@@ -12,7 +12,7 @@ def with_libpython() -> dict[str, str]:
     name = sysconfig.get_config_var("INSTSONAME") or ""
     folder = Path(sysconfig.get_config_var("LIBDIR") or "")
     places = (folder / name, folder / (sysconfig.get_config_var("MULTIARCH") or "") / name)
-    found = next((each for each in places if ".so" in name and each.is_file()), None)
-    if found is None or not sys.platform.startswith("linux"):
+    library = next((path for path in places if ".so" in name and path.is_file()), None)
+    if library is None or not sys.platform.startswith("linux"):
         pytest.skip("LD_PRELOAD loads libpython on Linux alone, where this Python has it as a library")
-    return {"LD_PRELOAD": str(found), "PYTHONHOME": sys.base_prefix, "LC_ALL": "C.UTF-8"}
+    return {"LD_PRELOAD": str(library), "PYTHONHOME": sys.base_prefix, "LC_ALL": "C.UTF-8"}

@@ -23,21 +23,21 @@ def recorded(of: Callable[..., Any], *vectors: Sequence[str]) -> TracedGraph:
 
 def computed(function: Traced, *arguments: Sequence[float]) -> list[float]:
     """What a traced function makes of numbers."""
-    given = dict(zip(function.vectors, arguments, strict=True))
-    found = values(function.recording, function.values, lambda vector, element: given[vector][element])
-    return [float(found[k]) for k in function.values]
+    numbers = dict(zip(function.vectors, arguments, strict=True))
+    value_of = values(function.recording, function.values, lambda vector, element: numbers[vector][element])
+    return [float(value_of[k]) for k in function.values]
 
 
-def values(recording: Recording, needed: Sequence[int], given: Callable[[int, int], Any]) -> Mapping[int, Any]:
+def values(recording: Recording, needed: Sequence[int], input_value: Callable[[int, int], Any]) -> Mapping[int, Any]:
     """Those of nodes, by their numbers."""
-    found: dict[int, Any] = {}
+    value_of: dict[int, Any] = {}
     with np.errstate(all="ignore"):
         for k in recording.needed(needed):
             node = recording.nodes[k]
             if node.operation == "INPUT":
-                found[k] = np.float64(given(*node.place))
+                value_of[k] = np.float64(input_value(*node.place))
             elif node.operation == "CONSTANT":
-                found[k] = np.float64(node.number)
+                value_of[k] = np.float64(node.number)
             else:
-                found[k] = COMPUTED[node.operation](*(found[each] for each in node.operands))
-    return found
+                value_of[k] = COMPUTED[node.operation](*(value_of[operand] for operand in node.operands))
+    return value_of

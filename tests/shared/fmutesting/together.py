@@ -16,7 +16,7 @@ def together(names: str, cases: Iterable[Any]) -> Callable[[Callable[..., None]]
         names: of the arguments that a case gives, with commas between them.
         cases: a value each, or a tuple of as many as there are names.
     """
-    given, cases = [name.strip() for name in names.split(",")], list(cases)
+    argument_names, cases = [name.strip() for name in names.split(",")], list(cases)
 
     def decorate(test: Callable[..., None]) -> Callable[..., None]:
         parameters = inspect.signature(test).parameters.values()
@@ -26,7 +26,7 @@ def together(names: str, cases: Iterable[Any]) -> Callable[[Callable[..., None]]
             failures: list[str] = []
             first: BaseException | None = None
             for k, case in enumerate(cases):
-                values = dict(zip(given, case if len(given) > 1 else (case,), strict=True))
+                values = dict(zip(argument_names, case if len(argument_names) > 1 else (case,), strict=True))
                 if "tmp_path" in fixtures:
                     values["tmp_path"] = fixtures["tmp_path"] / str(k)
                     values["tmp_path"].mkdir()
@@ -38,7 +38,7 @@ def together(names: str, cases: Iterable[Any]) -> Callable[[Callable[..., None]]
             if failures:
                 raise AssertionError(f"{len(failures)} of {len(cases)} cases:\n" + "\n".join(failures)) from first
 
-        all_cases.__signature__ = inspect.Signature([p for p in parameters if p.name not in given])  # type: ignore[attr-defined]
+        all_cases.__signature__ = inspect.Signature([p for p in parameters if p.name not in argument_names])  # type: ignore[attr-defined]
         return all_cases
 
     return decorate

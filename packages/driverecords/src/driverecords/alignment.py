@@ -44,6 +44,7 @@ def aligned(
     others = [channel for channel in channels.values() if channel.time is not own]
     if not others:
         return own, {quantity: channel.values for quantity, channel in channels.items()}
+    # a held value is there from its first message on, and its last one holds to the end
     begin = max(channel.time[0] for channel in channels.values())
     end = min(channel.time[-1] if q not in received else np.inf for q, channel in channels.items())
     time = own[(own >= begin) & (own <= end)]
@@ -61,4 +62,5 @@ def _at(time: np.ndarray, channel: Channel, received: bool) -> np.ndarray:
     same = np.searchsorted(channel.time, time)
     if (same < len(channel.time)).all() and (channel.time[same] == time).all():
         return channel.values[same]
+    # straight lines between samples half a millisecond apart change a step of the torque by more than its noise
     return make_interp_spline(channel.time, channel.values, k=min(3, len(channel.time) - 1))(time)

@@ -36,7 +36,7 @@ class ArrowFile:
         self.columns: Sequence[Column] = [_column(field) for field in self._schema]
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`."""
+        """See `driverecords.source.Source.read`."""
         names = [self._schema.field(place).name for place in places]
         table = self._done(lambda: _table(self.path, names))
         return [self._samples(table.column(name), place) for name, place in zip(names, places, strict=True)]
@@ -53,6 +53,7 @@ class ArrowFile:
             try:
                 values = column.cast("double").to_numpy()  # decimals, flags, texts of numbers
             except Exception:  # pyarrow has many
+                # a column of texts has a decimal and marks between thousands of its own, as a text file has
                 texts = [str(cell) for cell in column.to_pylist()]
                 values, unreadable = numbers(texts, decimal_of(texts))
                 return Samples(values, None, Where("row {0}", range(len(values))), unreadable)

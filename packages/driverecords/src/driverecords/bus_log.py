@@ -29,6 +29,7 @@ class Kind(NamedTuple):
 class Frames(NamedTuple):
     """The frames of one kind: times in s from the first frame of the log on, and their bytes."""
 
+    # decoded frames took 390 bytes each: an hour at 1 kHz did not fit into the memory of the process that reads it
     times: "array[float]"
     data: list[bytes]
 
@@ -61,11 +62,11 @@ class BusLog:
         self.columns: Sequence[Column] = _columns(self._places)
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`; signals of a message have the same array of times."""
-        found: dict[int, Samples] = {}
+        """See `driverecords.source.Source.read`; signals of a message have the same array of times."""
+        by_place: dict[int, Samples] = {}
         for kind in dict.fromkeys(self._places[place][0] for place in places):
-            found |= self._decoded(kind, [place for place in places if self._places[place][0] == kind])
-        return [found[place] for place in places]
+            by_place |= self._decoded(kind, [place for place in places if self._places[place][0] == kind])
+        return [by_place[place] for place in places]
 
     def _decoded(self, kind: Kind, places: Sequence[int]) -> dict[int, Samples]:
         """Some signals of a message. Of what its frames hold beside them nothing is kept."""
@@ -75,6 +76,7 @@ class BusLog:
         for k, (moment, data) in enumerate(zip(frames.times, frames.data, strict=True)):
             try:
                 content = message.decode(data, decode_choices=False)
+            # a short frame in the middle of a log is damage, and was forgiven once
             except Exception as error:
                 if k + 1 == len(frames.times) and moment == self._end:
                     break  # the log was cut off
@@ -116,6 +118,7 @@ def _read(path: Path, known: Messages, databases: Sequence[Path]) -> tuple[dict[
         for message in log:
             begin = message.timestamp if begin is None else begin
             end = message.timestamp - begin
+            # these have an identifier, and no bytes to decode
             if message.is_error_frame or message.is_remote_frame:
                 continue
             if (message.arbitration_id, message.is_extended_id) not in known:

@@ -33,11 +33,14 @@ class Kind(NamedTuple):
     lines: Callable[[Iterable[str]], Iterator[str]] | None = None
 
 
+# a log of a system with decimal commas has them in its times
 STAMP = re.compile(r"\s*(\d+(?:[.,]\d*)?|[.,]\d+)\s+(.*)", re.DOTALL)
+# `date Mon Jan 5 10:15:30.500 am 2026` above all, and again behind `Begin TriggerBlock`
 DATE = re.compile(r"\s*(?:date|begin\s+triggerblock)\s+\w+\s+(.+)", re.IGNORECASE)
 NAMED = re.compile(r"(\d+\s+)\w+(\s+[TR]x\s.*\bID = (\d+)(x?)\s*)", re.IGNORECASE | re.DOTALL)
 """A frame whose number stands behind too: before it may be its name, such as DCDC."""
 
+# python-can splits a CAN FD frame into five cells and its data: one of no bytes ends a cell too early
 EMPTY_FD = re.compile(r"(CANFD\s+\d+\s+[TR]x\s+\S+(?:\s+\S+)?\s+[01]\s+[01]\s+0\s+0)\s*", re.IGNORECASE)
 
 
@@ -49,19 +52,22 @@ def asc_lines(lines: Iterable[str]) -> Iterator[str]:
         if line.lower().lstrip().startswith("base"):
             relative, number = "relative" in line.lower(), "d" if "dec" in line.lower() else "X"
             line += "\nno internal events logged\n"  # python-can takes the line behind the head for a part of it
-        elif found := DATE.match(line):
-            date = _seconds(found[1])
+        elif match := DATE.match(line):
+            # a logger that is triggered again goes on with a second block, whose times begin at 0
+            date = _seconds(match[1])
             begin = date if begin is None else begin
             block = 0.0 if date is None or begin is None else date - begin
             at = max(at, block) if relative else at
-        elif found := STAMP.fullmatch(line):
-            time = float(found[1].replace(",", "."))
+        elif match := STAMP.fullmatch(line):
+            time = float(match[1].replace(",", "."))
             last, at = at, at + time if relative else time + shift
+            # a late frame goes back too, but not to before the date of its block
             if at < last < block:
                 shift = block
                 at = time + shift
-            rest, named = EMPTY_FD.fullmatch(found[2]), NAMED.fullmatch(found[2])
-            frame = f"{named[1]}{int(named[3]):{number}}{named[4]}{named[2]}" if named else found[2]
+            rest, named = EMPTY_FD.fullmatch(match[2]), NAMED.fullmatch(match[2])
+            # `ID = 256` is decimal, whatever the base of the log is
+            frame = f"{named[1]}{int(named[3]):{number}}{named[4]}{named[2]}" if named else match[2]
             line = f"{at:.9f} {f'{rest[1]} 00' if rest else frame}"
             if " TxRq " in line:
                 continue
@@ -78,40 +84,45 @@ def _seconds(text: str) -> float | None:
         return None
 
 
+# as `candump -x -a` prints: (000.010000)  can0  RX - -  100   [4]  01 00 00 00   '....'
 CONSOLE = re.compile(
     r"\s*\(([^)]+)\)\s+(\S+)\s+(?:[TR]X\s+(?:\S\s+){1,2})?([0-9A-F]+)\s+\[(\d+)\]\s*(.*)", re.IGNORECASE | re.DOTALL
 )
 
 
-LOOKED_AT = 100
+FIRST_LINES = 1000
 """Lines by which it is decided what times of candump are."""
 
 
 def candump_lines(lines: Iterable[str]) -> Iterator[str]:
     """Lines as `candump -l` writes them, of those and of what it prints. Times are each from the line before (-t d) if
-    of those of the first LOOKED_AT lines more than a tenth go back, or if they begin with 0 and do not change."""
-    begin = [*islice(lines := iter(lines), LOOKED_AT)]
-    stamps = [found[1] for found in map(CONSOLE.fullmatch, begin) if found and is_number(found[1])]
+    of those of the FIRST_LINES more than a tenth go back, or if they begin with 0 and do not change."""
+    begin = [*islice(lines := iter(lines), FIRST_LINES)]
+    stamps = [match[1] for match in map(CONSOLE.fullmatch, begin) if match and is_number(match[1])]
     steps = [float(b) - float(a) for a, b in pairwise(stamps)]
+    # -t d of a cyclic message: 0, and the same from then on; -t z of a coarse clock begins with 0 too, and goes on
     steady = len(steps) > 1 and not any(steps[1:]) and float(stamps[0]) == 0.0
     relative, at = steady or 10 * sum(step < 0.0 for step in steps) > len(stamps), 0.0
     for line in chain(begin, lines):
         if line.startswith("#"):
             continue
-        if found := CONSOLE.fullmatch(line):
-            data = found[5].partition("'")[0]
+        if match := CONSOLE.fullmatch(line):
+            # -a prints the bytes once more as letters
+            data = match[5].partition("'")[0]
             data = "R" if data.startswith("remote") else data.replace(" ", "").strip()
-            mark = "##0" if len(found[4]) > 1 else "#"
-            clock = read_clock(found[1])
-            time = clock.second + DAY * ((clock.day or EPOCH) - EPOCH) if clock else at * relative + float(found[1])
+            # [08] with two digits is a frame of CAN FD
+            mark = "##0" if len(match[4]) > 1 else "#"
+            clock = read_clock(match[1])  # -t A prints the date
+            time = clock.second + DAY * ((clock.day or EPOCH) - EPOCH) if clock else at * relative + float(match[1])
             at = time
-            yield f"({time:.6f}) {found[2]} {found[3]}{mark}{data}\n"
+            yield f"({time:.6f}) {match[2]} {match[3]}{mark}{data}\n"
         else:
             yield line
 
 
 BLF = re.compile(rb"LOGG")
 ASC = re.compile(rb"(\xef\xbb\xbf)?\s*(//[^\n]*\n\s*)*(date [^\n]*\n\s*)?base\s+(hex|dec)", re.IGNORECASE)
+# a table whose first column is a date in brackets is no log: an identifier has to follow
 CANDUMP = re.compile(rb"\s*(#[^\n]*\n\s*)*\([-: \d]+\.\d+\)\s+\S+\s+(\S+\s+){0,3}[0-9A-Fa-f]+(#|\s+\[)")
 
 LOGS = (
@@ -119,6 +130,7 @@ LOGS = (
     Kind("ASC", ASC, "ASCReader", asc_lines),
     Kind("candump", CANDUMP, "CanutilsLogReader", candump_lines),
     Kind("CSV of python-can", re.compile(rb"timestamp,arbitration_id,"), "CSVReader"),
+    # version 1.0 of PCAN-View begins with a line of marks, later ones with their number
     Kind("TRC", re.compile(rb"\s*;(\$FILEVERSION|#{20}|-{20})"), "TRCReader"),
 )
 
@@ -188,6 +200,7 @@ def messages(path: Path) -> Iterator[Iterable[Any]]:
             with reader(path) as log:
                 yield log
         else:
+            # logs begin with a byte-order mark, and end within a character where they were cut off
             with path.open(encoding="utf-8-sig", errors="replace") as text:
                 lines = Lines(kind.lines(text))
                 yield lines.read_by(reader(lines))

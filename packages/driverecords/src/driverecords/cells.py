@@ -34,11 +34,14 @@ EMPTY = frozenset(("", *WORDS.split(), *PHRASES.split("|")))
 SPELLINGS = sorted({spelling for word in EMPTY for spelling in (word, word.upper(), word.title(), word.capitalize())})
 """Of these words, for a parser that looks for them letter by letter."""
 
+# `1.#QNAN00` is of the C of Microsoft, whatever tool was built with it
 NO_NUMBER = re.compile(r"[+-]?(1\.#(qnan|snan|ind|nan)0*|nan\(\w*\))|#\w+[!?]|[-.,#*]+")
 """As libraries of C print it, errors of spreadsheets, and what displays show."""
 
 NUMBER = re.compile(
-    r"[+-]?(\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+|d[+-]\d+)?", re.ASCII | re.IGNORECASE
+    # an exponent with D needs its sign, which Fortran always writes: 1D2 may be anything
+    r"[+-]?(\d+(?:[.,]\d*)?|[.,]\d+|\d{1,3}([.,' ’]\d{3})+([.,]\d*)?)(e[+-]?\d+|d[+-]\d+)?",
+    re.ASCII | re.IGNORECASE,
 )
 
 GROUPED = {
@@ -63,15 +66,15 @@ TEXT = re.compile(r"""=?(["'])(?P<inner>.*)\1|'(?P<marked>[^']*)""", re.DOTALL)
 def cleaned(cell: str) -> str:
     """Without blanks and quotes around it, and with plain signs."""
     text = unquoted(cell.translate(SIGNS).strip())
-    if found := NEGATIVE.fullmatch(text):
-        return ((found["plus"] and "+") or "-") + found[found.lastgroup or 0]
+    if match := NEGATIVE.fullmatch(text):
+        return ((match["plus"] and "+") or "-") + match[match.lastgroup or 0]
     return text
 
 
 def unquoted(text: str) -> str:
     """What stands between the quotes."""
-    found = TEXT.fullmatch(text)
-    return (found["inner"] or found["marked"] or "").strip() if found else text
+    match = TEXT.fullmatch(text)
+    return (match["inner"] or match["marked"] or "").strip() if match else text
 
 
 def is_number(cell: str) -> bool:
@@ -90,7 +93,8 @@ def decimal_of(*columns: Sequence[str]) -> str:
     thousands in a column that has whole numbers below thousand without."""
     there = [[text for text in map(cleaned, cells) if NUMBER.fullmatch(text)] for cells in columns]
     sure = [text for texts in there for text in texts if not THOUSANDS.fullmatch(text)]
-    commas, points = (sum(text.rfind(one) > text.rfind(other) for text in sure) for one, other in (",.", ".,"))
+    # 36,52 and 36.52 are sure; 1.520 may be a height of 1520 m in a German file
+    commas, points = (sum(text.rfind(mark) > text.rfind(other) for text in sure) for mark, other in (",.", ".,"))
     if commas != points:
         return "," if commas > points else "."
     for texts in there:
@@ -122,9 +126,10 @@ def _number(cell: str, decimal: str) -> float | None:
     if is_missing(cell):
         return nan
     text = cleaned(cell)
-    if found := GROUPED[decimal].fullmatch(text):
-        text = text.replace(found[1], "")
+    if match := GROUPED[decimal].fullmatch(text):
+        text = text.replace(match[1], "")
     if decimal == ",":
+        # a point among decimal commas may part thousands or decimals, so it is refused
         if "." in text:
             return None
         text = text.replace(",", ".")

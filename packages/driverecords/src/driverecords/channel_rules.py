@@ -23,7 +23,7 @@ WIDEST = 3
 """Samples of a spike at the most."""
 
 BRIEF = Threshold(0.01, "s", "longest spike of more than one sample", "a bit of a test drive lasts 40 ms")
-AROUND = 15
+NEIGHBOURS = 15
 """Samples before and after a spike with which it is compared."""
 
 LONE = Threshold(
@@ -108,7 +108,7 @@ def of_channels(channels: Iterable[Channel]) -> list[Finding]:
 
 def lacking(channel: Channel) -> Iterator[Finding]:
     """Samples without a value: codes of loggers, and holes that were filled."""
-    for code, times, place in channel.lacks:
+    for code, times, place in channel.missing:
         rule, odd = HOLE, "has no value, and is filled by a straight line"
         if code is not None:
             rule, odd = SENTINEL, f"is {code:g}, which loggers write where there is no value, and is taken for none"
@@ -156,8 +156,10 @@ def excursions(channel: Channel) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """By their width, indices of the samples that leave their neighbours far enough to be spikes, and how far, over the
     range of these."""
     x = channel.values
-    if len(x) <= 2 * (AROUND + WIDEST) or channel.unit == "1":
+    # a flag leaves its neighbours whenever it is set
+    if len(x) <= 2 * (NEIGHBOURS + WIDEST) or channel.unit == "1":
         return
+    # the median takes the spikes out of the range that they are compared with
     smallest = max(LARGE * float(np.ptp(_smooth(x, WIDEST))), _smallest(channel))
     for width in range(1, WIDEST + 1):
         if width == 1 or width * channel.interval <= BRIEF * (1.0 + 1e-6):
@@ -187,8 +189,8 @@ def _smallest(channel: Channel) -> float:
 
 
 def _range_around(x: np.ndarray, at: np.ndarray, width: int) -> np.ndarray:
-    """Range of the AROUND samples before and after those at some indices, but for `width - 1` on either side."""
-    distance = np.arange(width, width + AROUND)
+    """Range of the NEIGHBOURS samples before and after those at some indices, but for `width - 1` on either side."""
+    distance = np.arange(width, width + NEIGHBOURS)
     index = np.abs(at[:, None] + np.concatenate((-distance[::-1], distance)))
     index = np.where(index >= len(x), 2 * (len(x) - 1) - index, index)
     return np.ptp(x[index], axis=1) if len(at) else np.empty(0)
@@ -223,6 +225,7 @@ def uncertain(channel: Channel) -> Iterator[Finding]:
 def unwrapped(counter: Channel) -> tuple[np.ndarray, np.ndarray]:
     """What a counter has that does not run over, and the indices of the samples where this is uncertain."""
     largest = counter.values.max()
+    # a counter of 4, 8 or 16 bits that ran over went backwards, and put the controller into fallback
     period = next((period for period in PERIODS if period > largest), PERIODS[-1])
     values = np.unwrap(counter.values, period=period)
     steps, frames = np.diff(values), np.diff(counter.time) / FRAME

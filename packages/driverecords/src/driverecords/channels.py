@@ -18,7 +18,18 @@ from .format_detection import opened
 from .missing_values import FILLED, coded, holes
 from .quantities import QUANTITIES, aliases
 from .source import Column, Kept, RecordingError, Samples, not_finite
-from .time_base import MOST, WHOLE, Break, Cut, around, clean_pieces, interval_of, spread, time_breaks, typed
+from .time_base import (
+    MOST,
+    WHOLE,
+    Break,
+    Cut,
+    break_around,
+    clean_pieces,
+    interval_of,
+    spread_equal_times,
+    time_breaks,
+    time_text,
+)
 
 LEAST = 2
 """Samples that every recording has."""
@@ -27,6 +38,7 @@ LONGEST_CELL = 100
 """Characters of a cell that are shown."""
 
 
+# without a limit a recording whose last third cannot be read was cut without a word
 FOOTER = 20
 """Rows without a time above the first one and below the last one, that a logger may write."""
 
@@ -34,7 +46,7 @@ LATEST = 1.0
 """Time in s that a channel may end before the times do, without a word."""
 
 
-class Lack(NamedTuple):
+class MissingSamples(NamedTuple):
     """Samples without a value: the number that the file has there, None if it has none, their times in s, and the place
     of the first in the file."""
 
@@ -56,7 +68,7 @@ class Channel:
         where: of a value in the file by its index, as in "line 12".
         file_unit: its unit in the file.
         clock: heading of the column of its time; "time" where a channel has its own.
-        lacks: samples that the file has without a value and that were left out, or filled in short holes.
+        missing: samples that the file has without a value and that were left out, or filled in short holes.
     """
 
     quantity: str
@@ -67,7 +79,7 @@ class Channel:
     where: Callable[[int], str]
     file_unit: FileUnit
     clock: str = "time"
-    lacks: Sequence[Lack] = ()
+    missing: Sequence[MissingSamples] = ()
 
     @property
     def interval(self) -> float:
@@ -123,7 +135,7 @@ class Channels:
 
     def has(self, quantity: str) -> bool:
         """Whether there is a column for it."""
-        return self._chooser.found(quantity) is not None
+        return self._chooser.choice(quantity) is not None
 
     def missing(self, *quantities: str) -> list[str]:
         """Those that have no column, time among them; errors as of `read`."""
@@ -173,25 +185,28 @@ class Channels:
         times = [] if self._source.own_time else self._chooser.times()
         choices = [self._chooser.needed(quantity) for quantity in quantities]
         first = next(iter(times), None)
-        before = [next((time for time in reversed(times) if time.place < each.place), first) for each in choices]
+        # of `Time;Velocity;Time;Motor Torque` each time holds for the columns behind it
+        before = [next((time for time in reversed(times) if time.place < choice.place), first) for choice in choices]
         clocks = [time for time in times if time in before]
         samples = self._source.read([choice.place for choice in (*clocks, *choices)])
-        if len({one.begin is None for one in samples[: len(clocks)]}) > 1:  # what one calls 0 the other does not
+        begins = [of_clock.begin for of_clock in samples[: len(clocks)]]
+        if len({begin is None for begin in begins}) > 1:  # what one calls 0 the other does not
             raise doubled(self._source, "time", [clock.column.heading for clock in clocks])
-        since = next((one.begin for one in samples[: len(clocks)]), None)
-        rows = {time: self._rows(time, one, since) for time, one in zip(clocks, samples, strict=False)}
-        breaks = [each for of in rows.values() for each in of.breaks]
+        since = next(iter(begins), None)
+        rows = {time: self._rows(time, of_clock, since) for time, of_clock in zip(clocks, samples, strict=False)}
+        breaks = [break_ for of in rows.values() for break_ in of.breaks]
         channels: dict[str, Channel] = {}
-        for choice, clock, one in zip(choices, before, samples[len(clocks) :], strict=True):
-            if np.isfinite(one.values).any() or choice.quantity not in optional:
-                known = [each.time for each in channels.values()]
-                channel, more = self._channel(choice, one, rows[clock] if clock else None, known, drawn)
+        for choice, clock, column_samples in zip(choices, before, samples[len(clocks) :], strict=True):
+            if np.isfinite(column_samples.values).any() or choice.quantity not in optional:
+                known = [channel.time for channel in channels.values()]
+                channel, more = self._channel(choice, column_samples, rows[clock] if clock else None, known, drawn)
                 channels[choice.quantity] = channel
                 breaks += more
         for together in _by_time(channels.values()):
+            # a message may stay away for long, but not in rows that it shares with a sensor
             gap = inf if drawn else min(QUANTITIES[channel.quantity].gap for channel in together)
             breaks += time_breaks(self.path, together[0].time, together[0].where, gap, jumps=drawn)
-        breaks += [each for channel in channels.values() for each in _beyond_limit(self.path, channel)]
+        breaks += [break_ for channel in channels.values() for break_ in _beyond_limit(self.path, channel)]
         return channels, breaks
 
     def _rows(self, choice: Choice, samples: Samples, since: Clock | None) -> Rows:
@@ -248,13 +263,14 @@ class Channels:
         assert time is not None, "a file has a column of time, or its channels have their own"
         index = np.flatnonzero(self._inside(time, begin))
         time, written = time[index], samples.values[index]
+        # 255 and 65535 are values of a counter
         is_code = np.zeros(len(index), dtype=bool) if drawn or declared.unit == "1" else coded(written)
-        found = holes(
+        filling = holes(
             time, np.where(is_code, np.nan, written), inf if drawn else max(FILLED, declared.hole), declared.held
         )
         places = {int(k): j for j, k in enumerate(index)} if samples.unreadable else {}
         odd = {places[k]: text for k, text in samples.unreadable.items() if k in places}
-        there = np.isfinite(found.values)
+        there = np.isfinite(filling.values)
         there[list(odd)] = False
         kept = np.flatnonzero(there)
         where = Kept(samples.where, index)
@@ -266,20 +282,21 @@ class Channels:
                 float(time[a]),
                 float(time[b]),
                 f"{self.path}, {where(a + 1)}: {column.heading} has no value for {time[b] - time[a]:g} s "
-                f"after {typed(float(time[a]))} s; holes of {FILLED:g} s at most are filled",
+                f"after {time_text(float(time[a]))} s; holes of {FILLED:g} s at most are filled",
             )
-            for a, b in found.long
+            for a, b in filling.long
         ]
-        lacking = {code: np.flatnonzero(written == code) for code in np.unique(written[is_code]).tolist()}
-        lacking |= {None: found.filled[~is_code[found.filled]]}
+        without_value = {code: np.flatnonzero(written == code) for code in np.unique(written[is_code]).tolist()}
+        without_value |= {None: filling.filled[~is_code[filling.filled]]}
         if not drawn and len(kept) and time[-1] - time[kept[-1]] > LATEST:
-            until, rest = typed(float(time[kept[-1]])), len(time) - 1 - int(kept[-1])
+            until, rest = time_text(float(time[kept[-1]])), len(time) - 1 - int(kept[-1])
             warn_once(
                 f"{self.path}: {column.heading} has no value after {until} s, in {rest} samples; they are left out"
             )
-        lacks = [Lack(code, time[at], where(at[0])) for code, at in lacking.items() if len(at)]
-        time = time[kept] if drawn else spread(time[kept])
-        if not drawn and len(once := _not_twice(time, found.values[kept])) < len(time):
+        missing = [MissingSamples(code, time[at], where(at[0])) for code, at in without_value.items() if len(at)]
+        time = time[kept] if drawn else spread_equal_times(time[kept])
+        # some loggers write a row twice
+        if not drawn and len(once := _not_twice(time, filling.values[kept])) < len(time):
             time, kept = time[once], kept[once]
         if len(kept) < LEAST:
             few = f"{self.path}: {len(kept)} samples; a drive needs at least two"
@@ -289,11 +306,11 @@ class Channels:
             column.heading,
             choice.unit,
             next((same for same in times if np.array_equal(same, time)), time),
-            choice.factor * found.values[kept],
+            choice.factor * filling.values[kept],
             Kept(samples.where, index[kept]),
             FileUnit(plain(choice.file_unit), abs(choice.factor)),
             rows.heading if rows else "time",
-            lacks,
+            missing,
         )
         return channel, breaks
 
@@ -352,6 +369,7 @@ def _beyond_limit(path: Path, channel: Channel) -> list[Break]:
     """Where a value is larger than any car has."""
     limit = QUANTITIES[channel.quantity].limit
     beyond = np.flatnonzero(np.abs(channel.values) > limit)
+    # with a wrong unit all samples are beyond
     few, breaks = len(beyond) <= MOST, []
     for k in beyond[:MOST].tolist():
         problem = (
@@ -360,7 +378,7 @@ def _beyond_limit(path: Path, channel: Channel) -> list[Break]:
         )
         advice = f"; --column {channel.quantity}='... [UNIT]' gives another unit"
         breaks.append(
-            (around(channel.time, k, k, problem) if few else Break(-inf, inf, problem))._replace(advice=advice)
+            (break_around(channel.time, k, k, problem) if few else Break(-inf, inf, problem))._replace(advice=advice)
         )
     return breaks
 
@@ -383,5 +401,5 @@ def _refusal(channels: Collection[Channel], breaks: Sequence[Break]) -> Recordin
     problem, advice = breaks[0].problem, breaks[0].advice
     if pieces := _clean(channels, breaks):
         begin, end = max(pieces, key=lambda piece: piece[1] - piece[0])
-        advice += f"; the longest piece without is --from {typed(begin)} --to {typed(end)}"
+        advice += f"; the longest piece without is --from {time_text(begin)} --to {time_text(end)}"
     return RecordingError(problem, advice)

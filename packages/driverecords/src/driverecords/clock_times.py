@@ -27,6 +27,7 @@ NAMED = rf"(?P<name>{'|'.join(sorted(MONTHS, key=len, reverse=True))})[a-z]*"
 WEEKDAY = r"(?:[a-z]+[.,]{0,2} +)?"
 
 TIME = re.compile(
+    # VBOX writes 101557.00 without colons, others 10:15:30:500 or 10h15m30s
     r"(?P<date>.*?)(?:[T ,:] *)?(?P<hour>\d\d?)(?P<colon>[:h]?)(?P<minute>[0-5]\d)(?:(?P=colon)|m)"
     r"(?P<second>[0-5]\d(?:[.,:]\d+)?)s? ?(?P<half>[AP]\.?M\.?|vorm\.?|nachm\.?)?"
     r"(?P<zone>Z| ?UTC| ?GMT| ?(?P<ahead>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d)?)?"
@@ -38,6 +39,7 @@ TIME = re.compile(
 DATES = tuple(
     re.compile(form, re.IGNORECASE)
     for form in (
+        # 20260105 has all of its digits: 2026111 is the 11th of January or the 1st of November
         r"(?!\d{1,7}$)(?P<year>\d{4})(?P<mark>[-/.年]?)(?P<month>\d\d?)(?:(?P=mark)|月)(?P<day>\d\d?)日?",
         r"(?P<first>\d\d?)(?P<mark>[-/.])(?P<second>\d\d?)(?P=mark)(?P<year>\d{4}|\d\d)",
         rf"{WEEKDAY}(?P<day>\d\d?)[-. ]+{NAMED}[-,. ]+(?P<year>\d{{4}}|\d\d)",
@@ -63,6 +65,7 @@ LENGTHS = {
 
 PART = re.compile(rf"(\d+(?:\.\d*)?(?:e[+-]?\d+)?)\s*({'|'.join(sorted(LENGTHS, key=len, reverse=True))})(?![a-su-zµ])")
 DURATION = re.compile(
+    # pandas writes `0 days 00:00:00.1`, Python `1 day, 0:00:00.1`, ISO 8601 `P0DT0H0M0.1S`
     rf"(?P<sign>[+-]?)p?(?P<parts>(?:t?{PART.pattern}[\s.]*)*)[t+]?(?P<clock>\d+:[0-5]\d:[0-5]\d(?:\.\d*)?)?"
 )
 """`0.1 sec`, `1 min 2.5 s`, `0 days 00:00:00.1`, and PT0.1S of ISO 8601, in small letters."""
@@ -93,6 +96,7 @@ class Clock(NamedTuple):
         if `last` seconds after it this clock has not come yet."""
         within = self.second - begin.second
         if self.ahead is not None and begin.ahead is not None:
+            # a clock that is set back in October goes on by its zone
             within -= self.ahead - begin.ahead
         if self.day is not None and begin.day is not None:
             return DAY * (self.day - begin.day) + within
@@ -112,26 +116,27 @@ def read_clock(text: str, month_first: bool = True) -> Clock | None:
         month_first: in a date in numbers with slashes.
     """
     if not text.isascii():
+        # août, févr., and the narrow blank that newer systems put before AM
         text = "".join(letter for letter in normalize("NFKD", text) if not combining(letter))
-    found = TIME.fullmatch(" ".join(text.split()))
-    if not found:
+    match = TIME.fullmatch(" ".join(text.split()))
+    if not match:
         return None
-    hour = int(found["hour"])
-    if found["half"]:
-        hour = hour % 12 + 12 * (found["half"][0].upper() in "PN")
-    ahead = 0.0 if found["zone"] else None
-    if found["ahead"]:
-        ahead = float(found["ahead"] + "1") * (HOUR * int(found["hours"]) + 60.0 * int(found["minutes"] or 0))
-    second = float(found["second"].replace(",", ".").replace(":", "."))
-    within = HOUR * hour + 60.0 * int(found["minute"]) + second
-    written = found["date"] + (found["year"] or "")
+    hour = int(match["hour"])
+    if match["half"]:
+        hour = hour % 12 + 12 * (match["half"][0].upper() in "PN")
+    ahead = 0.0 if match["zone"] else None
+    if match["ahead"]:
+        ahead = float(match["ahead"] + "1") * (HOUR * int(match["hours"]) + 60.0 * int(match["minutes"] or 0))
+    second = float(match["second"].replace(",", ".").replace(":", "."))
+    within = HOUR * hour + 60.0 * int(match["minute"]) + second
+    written = match["date"] + (match["year"] or "")
     if not written:
         return Clock(None, within, ahead)
-    dated = next((each.groupdict() for form in DATES if (each := form.fullmatch(written))), None)
+    dated = next((date_match.groupdict() for form in DATES if (date_match := form.fullmatch(written))), None)
     if dated is None:
         return None
     if "first" in dated:
-        month, day = (dated[each] for each in ("first", "second"))
+        month, day = (dated[part] for part in ("first", "second"))
         if dated["mark"] == "." or not month_first:
             month, day = day, month
     else:
@@ -154,23 +159,23 @@ def seconds(texts: Sequence[str]) -> tuple[np.ndarray, Clock | None]:
         readings = [_since([read_clock(text, month_first) for text in texts]) for month_first in _orders(first)]
         return min(readings, key=lambda reading: (np.isnan(reading[0]).sum(), _length(reading[0])))
     if MINUTES.fullmatch(first.strip()):
-        found = [MINUTES.fullmatch(text.strip()) for text in texts]
-        values = [60.0 * int(f["minute"]) + float(f["second"].replace(",", ".")) if f else np.nan for f in found]
+        matches = [MINUTES.fullmatch(text.strip()) for text in texts]
+        values = [60.0 * int(f["minute"]) + float(f["second"].replace(",", ".")) if f else np.nan for f in matches]
         return _unwrapped(np.array(values), HOUR), None
     return np.array([_duration(text) for text in texts]), None
 
 
 def _duration(text: str) -> float:
     """In s, NaN of what is none."""
-    found = DURATION.fullmatch(text.strip().casefold().replace(",", ".").replace("\u03bc", "µ"))
-    parts = PART.findall(found["parts"]) if found else []
-    if not found or not (parts or found["clock"]) or [unit for _, unit in parts] == ["m"]:  # which are metres
+    match = DURATION.fullmatch(text.strip().casefold().replace(",", ".").replace("\u03bc", "µ"))
+    parts = PART.findall(match["parts"]) if match else []
+    if not match or not (parts or match["clock"]) or [unit for _, unit in parts] == ["m"]:  # which are metres
         return nan
-    length = sum(float(number) * LENGTHS[unit] for number, unit in parts) * (-1.0 if found["sign"] == "-" else 1.0)
-    if found["clock"]:
-        hour, minute, second = map(float, found["clock"].split(":"))
+    length = sum(float(number) * LENGTHS[unit] for number, unit in parts) * (-1.0 if match["sign"] == "-" else 1.0)
+    if match["clock"]:
+        hour, minute, second = map(float, match["clock"].split(":"))
         within = HOUR * hour + 60.0 * minute + second
-        length += -within if found["sign"] == "-" and not parts else within
+        length += -within if match["sign"] == "-" and not parts else within
     return length
 
 
@@ -189,13 +194,14 @@ def _since(clocks: Sequence[Clock | None]) -> tuple[np.ndarray, Clock | None]:
         return np.full(len(clocks), np.nan), None
     alike = [clock if clock and (clock.day is None) == (begin.day is None) else None for clock in clocks]
     if begin.day is None:
-        return _unwrapped(np.array([each.after(begin, -DAY) if each else np.nan for each in alike]), DAY), begin
+        return _unwrapped(np.array([clock.after(begin, -DAY) if clock else np.nan for clock in alike]), DAY), begin
     return np.array([clock.after(begin, 0.0) if clock else np.nan for clock in alike]), begin
 
 
 def _unwrapped(times: np.ndarray, period: float) -> np.ndarray:
     """Times that begin again after a period."""
     there = np.isfinite(times)
+    # a step back by less is a row out of its place, which is refused by name
     turns = np.append(0.0, np.cumsum(np.diff(times[there]) < -0.5 * period))[: there.sum()]
     times = times.copy()
     times[there] += period * turns

@@ -45,13 +45,13 @@ class Chooser:
     """Finds the columns of a file.
 
     Attributes:
-        given: by quantity, the heading or name of the column in which somebody says it is, with or without a unit;
+        by_user: by quantity, the heading or name of the column in which somebody says it is, with or without a unit;
             a minus before it says that its sign is the other one.
     """
 
     source: Source
     names: Aliases
-    given: Mapping[str, str]
+    by_user: Mapping[str, str]
 
     def needed(self, quantity: str) -> Choice:
         """The column of a quantity.
@@ -59,18 +59,19 @@ class Chooser:
         Raises:
             RecordingError: there is none; several; one of a unit that is none of this quantity.
         """
-        choice = self.found(quantity)
+        choice = self.choice(quantity)
         if choice:
             return choice
         raise self.absence([quantity])
 
     def missing(self, quantities: Iterable[str]) -> list[str]:
         """Those that no column holds; else as `needed`."""
-        return [quantity for quantity in quantities if self.found(quantity) is None]
+        return [quantity for quantity in quantities if self.choice(quantity) is None]
 
     def absence(self, missing: Sequence[str]) -> RecordingError:
         """What to say of quantities that no column holds."""
         examples = ", ".join(example(quantity, self.names) for quantity in missing)
+        # all at once: it took a try for each column that was not there
         if missing[1:]:
             names = plain(", ".join(column.name for column in self.source.columns))
             which = " or ".join(missing)
@@ -89,14 +90,14 @@ class Chooser:
         """What to say of a name that no column has."""
         return plain(nearest(name, [column.name for column in self.source.columns], every="the file has"))
 
-    def found(self, quantity: str) -> Choice | None:
+    def choice(self, quantity: str) -> Choice | None:
         """The column of a quantity, None if there is none; else as `needed`."""
-        if quantity in self.given:
-            return self._given(quantity, self.given[quantity])
-        meant = self._meant(quantity)
-        return (
-            self._one(quantity, meant[:1] if self._each_has_its_own(quantity, meant) else meant, 1.0) if meant else None
-        )
+        if quantity in self.by_user:
+            return self._named_by_user(quantity, self.by_user[quantity])
+        places = self._meant(quantity)
+        if not places:
+            return None
+        return self._only(quantity, places[:1] if self._each_has_its_own(quantity, places) else places, 1.0)
 
     def times(self) -> list[Choice]:
         """The columns of time: several if each holds for those behind it, up to the next.
@@ -104,20 +105,21 @@ class Chooser:
         Raises:
             RecordingError: as of `needed`.
         """
-        meant = [] if "time" in self.given else self._meant("time")
+        meant = [] if "time" in self.by_user else self._meant("time")
         several = self._each_has_its_own("time", meant)
-        return [self._one("time", [each], 1.0) for each in meant] if several else [self.needed("time")]
+        return [self._only("time", [place], 1.0) for place in meant] if several else [self.needed("time")]
 
-    def _each_has_its_own(self, quantity: str, found: Sequence[Place]) -> bool:
+    def _each_has_its_own(self, quantity: str, columns: Sequence[Place]) -> bool:
         """Whether columns are times of one name, each before others."""
-        places = [*(place for place, _ in found), len(self.source.columns)]
-        names = {key(self.source.columns[place].name) for place, _ in found}
+        places = [*(place for place, _ in columns), len(self.source.columns)]
+        names = {key(self.source.columns[place].name) for place, _ in columns}
         return quantity == "time" and len(names) == 1 and bool((np.diff(places) > 1).all())
 
     def _meant(self, quantity: str) -> Sequence[Place]:
         """The columns that may hold a quantity, by their names and units."""
         sure, open_ = self._named(self.names[quantity]), self._named(BY_UNIT.get(quantity, ()))
         unitless = [(place, unit) for place, unit in sure if unit is None]
+        # of `Speed [km/h]` and `Speed [rpm]` the unit tells which is that of the vehicle
         return _fitting(quantity, sure) or unitless or _fitting(quantity, open_) or sure or self._below(quantity)
 
     def _named(self, names: Sequence[str]) -> list[Place]:
@@ -140,29 +142,29 @@ class Chooser:
             for name, unit in _readings(column):
                 yield place, name, unit
 
-    def _given(self, quantity: str, text: str) -> Choice:
+    def _named_by_user(self, quantity: str, text: str) -> Choice:
         sign = -1.0 if text.startswith("-") else 1.0
-        name_given = text.removeprefix("-").strip()
+        heading = text.removeprefix("-").strip()
         columns = self.source.columns
-        found = [(k, _readings(column)[-1][1]) for k, column in enumerate(columns) if column.heading == name_given]
-        name, unit = split(name_given)
-        found = found or [
+        places = [(k, _readings(column)[-1][1]) for k, column in enumerate(columns) if column.heading == heading]
+        name, unit = split(heading)
+        places = places or [
             (place, unit or own)
             for place, name_read, own in self._readings()
             if key(name_read).removeprefix("-") == key(name)
         ]
-        if not found:
+        if not places:
             raise RecordingError(
-                f"{self.source.headings}: no column {plain(name_given, 60)}, which --column gives for {quantity}; "
+                f"{self.source.headings}: no column {plain(heading, 60)}, which --column gives for {quantity}; "
                 f"{self._nearest(name)}"
             )
-        return self._one(quantity, found, sign)
+        return self._only(quantity, places, sign)
 
-    def _one(self, quantity: str, found: Sequence[Place], sign: float) -> Choice:
+    def _only(self, quantity: str, places: Sequence[Place], sign: float) -> Choice:
         columns = self.source.columns
-        if len(found) > 1:
-            raise doubled(self.source, quantity, [columns[k].heading for k, _ in found])
-        place, unit = found[0]
+        if len(places) > 1:
+            raise doubled(self.source, quantity, [columns[k].heading for k, _ in places])
+        place, unit = places[0]
         si, factor = self._factor(quantity, columns[place], unit)
         return Choice(quantity, columns[place], place, si, sign * factor, unit or si)
 
@@ -171,6 +173,7 @@ class Chooser:
         declared = QUANTITIES[quantity]
         mended = f"--column {quantity}={quote(f'{column.name} [{declared.file_unit}]')}"
         if unit is None and declared.unit != "1":
+            # a date of a form that is not read was asked for a unit, and with one was said to be no number
             clock = f" (a time of day needs none, such as {EXAMPLES})" if quantity == "time" else ""
             raise RecordingError(
                 f"{self.source.headings}: {column.heading} has no unit; write one into the heading, as in "
@@ -202,10 +205,10 @@ def si_of(quantity: str, unit: str) -> tuple[str, float]:
         raise ValueError(f"{reason}; wanted is {declared.unit} or what converts into it") from reason
 
 
-def _fitting(quantity: str, found: Sequence[Place]) -> list[Place]:
+def _fitting(quantity: str, places: Sequence[Place]) -> list[Place]:
     """Those whose unit is one of the quantity."""
     units = (QUANTITIES[quantity].unit, QUANTITIES[quantity].also)
-    return [each for each in found if any(each[1] and unit and converts(each[1], unit) for unit in units)]
+    return [place for place in places if any(place[1] and unit and converts(place[1], unit) for unit in units)]
 
 
 def _readings(column: Column) -> list[tuple[str, str | None]]:
@@ -216,6 +219,7 @@ def _readings(column: Column) -> list[tuple[str, str | None]]:
 
 def doubled(source: Source, quantity: str, headings: Sequence[str]) -> RecordingError:
     """What to say of several columns that could hold a quantity."""
+    # no option tells two of the same heading apart
     distinct = [heading for heading in headings if headings.count(heading) == 1]
     if not distinct:
         called = f"{len(headings)} columns are called {headings[0]}; rename all but one in the file"

@@ -26,6 +26,7 @@ LOOKED_AT = 500
 EXCEL = re.compile(r"sep=(?P<separator>.)\s*\n")
 """A first line that spreadsheets write and obey."""
 
+# numpy writes # before the names, an INI has ; there; below the names of Markdown stands | --- | ---: |
 COMMENT, LINE = re.compile(r"\s*(?P<mark>[#%!;*]+|//+|--+\s|REM\s)\s*"), re.compile(r"[-=_+:|*\s]*")
 """With which a comment or a line of names may begin, and a line that only parts others."""
 
@@ -61,9 +62,10 @@ class Dialect:
     def names_others(self, line: str) -> bool:
         """Whether a line among the numbers names columns too, and not the same ones."""
         first, *rest = (unquoted(cell.strip()) for cell in line.split(self.separator))
-        found = [*filter(None, (COMMENT.sub("", first, count=1).strip(), *rest))]
+        cells = [*filter(None, (COMMENT.sub("", first, count=1).strip(), *rest))]
+        # the same names again, behind a comment mark or with an empty end, are those of a new page
         names = [*filter(None, self.names)]
-        return found != names and sum(name in found for name in names) > 1
+        return cells != names and sum(name in cells for name in names) > 1
 
     def is_note(self, line: str) -> bool:
         """Whether a line among the numbers is a comment, or the name of an event."""
@@ -76,12 +78,13 @@ class Dialect:
 def is_comment(first: str, separator: str) -> bool:
     """Whether a row is one by its first cell. A mark alone, or at a number, may be that of an event in the row; before
     a blank that separates it is none. What says that a value is missing, as #N/A, begins none."""
-    found = COMMENT.match(first)
-    if not found or separator == " ":
-        return found is not None
+    mark = COMMENT.match(first)
+    if not mark or separator == " ":
+        return mark is not None
+    # rows that begin with #N/A were taken for comments
     if is_missing(first):
         return False
-    rest = first[found.end("mark") :].rstrip()
+    rest = first[mark.end("mark") :].rstrip()
     return bool(rest) and (rest != rest.lstrip() or not is_number(rest))
 
 
@@ -96,9 +99,10 @@ def dialect_of(text: str, path: Path) -> Dialect:
         RecordingError: there is no row of names; a cell is longer than any can be.
     """
     excel = EXCEL.match(text)
-    found = {separator: _rows(text, separator, path) for separator in (excel["separator"] if excel else SEPARATORS)}
-    separator = max(found, key=lambda separator: _likely(separator, found[separator]))
-    rows = found[separator][1:] if excel else found[separator]
+    separators = excel["separator"] if excel else SEPARATORS
+    rows_by = {separator: _rows(text, separator, path) for separator in separators}
+    separator = max(rows_by, key=lambda separator: _likely(separator, rows_by[separator]))
+    rows = rows_by[separator][1:] if excel else rows_by[separator]
     if not rows:
         raise RecordingError(f"{path} is empty")
     above, below = _parted(rows, separator)
@@ -141,6 +145,7 @@ def _has_index(names: Sequence[str], rows: Sequence[Row], path: Path) -> bool:
         return False
     if counted[0] != first or all(map(is_clock_time, behind)):
         return True
+    # rows counted from 1 may be the time in ms, unless what is behind goes on as evenly as a time
     steps = np.diff(numbers(behind, decimal_of(behind))[0])
     if not 0.0 < steps.max() < EVEN * steps.min():
         raise RecordingError(
@@ -152,6 +157,7 @@ def _has_index(names: Sequence[str], rows: Sequence[Row], path: Path) -> bool:
 
 def _is_decimal_too(names: Sequence[str], rows: Sequence[Sequence[str]]) -> bool:
     """Whether the comma that separates cells stands in numbers too, without quotes."""
+    # 36,5 and 0,1 in three columns made six, and the speed 36 came into the place of the time
     wider = [sum(map(is_number, cells)) > _filled(names) for cells in rows]
     return 2 * sum(wider) > len(rows) and not any("." in cell or "," in cell for cells in rows for cell in cells)
 
@@ -162,6 +168,7 @@ def _uncommented(cells: Sequence[str], width: int) -> Sequence[str]:
     Args:
         width: cells in the rows of numbers.
     """
+    # a column of row numbers headed # lost its name, which moved all other names by one in silence
     first = [COMMENT.sub("", cell, count=1) if not k else cell for k, cell in enumerate(cells)]
     return first[1:] if len(first) > width and not first[0] and cells[0] else first
 
@@ -205,6 +212,7 @@ def _parted(rows: Sequence[Row], separator: str) -> tuple[Sequence[Row], Sequenc
     recording, are no names if a number is among them.
     """
     last_rows = _last(rows)
+    # a preamble has rate, date and number of the bench, in fewer cells
     usual = median(map(_filled, last_rows))
     begins = 2 * sum(_numbers(cells[:1]) for cells in last_rows) > len(last_rows)
     numeric = [
@@ -227,6 +235,7 @@ def _filled(cells: Sequence[str]) -> int:
 def _are_units(cells: Sequence[str], names: Sequence[str]) -> bool:
     """Whether a row below names holds units, for each name one or nothing. If one is that of a time, two
     thirds of them may be none, as `enum`."""
+    # with a word such as enum for a gear the line of units was taken for the names
     units = {k: unit for k, cell in enumerate(cells) if (unit := cell.strip(" []()"))}
     named = all(k < len(names) and names[k].strip() for k in units)
     none = [unit for unit in units.values() if not known(unit)]

@@ -91,6 +91,7 @@ def read_drive(
     received = [WHEELS] if speed == WHEELS and is_slower(channels[speed], channels["T_mot"]) else []
     used = dict(channels)
     if counter := used.pop("alive", None):
+        # a wrong count puts the controller into fallback; without one it drives on
         counted, uncertain = unwrapped(counter)
         used |= {} if len(uncertain) else {"alive": replace(counter, values=counted)}
     time, values = aligned(used, "T_mot", [*received, *OFFERED])

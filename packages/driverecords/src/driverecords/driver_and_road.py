@@ -34,7 +34,7 @@ def read_course(path: Path) -> Course:
     """Reads a file that a manoeuvre is drawn from.
 
     Raises:
-        RecordingError: see `harness.recordings.channels.Channels.read`; only T_driver must be there.
+        RecordingError: see `driverecords.channels.Channels.read`; only T_driver must be there.
     """
     try:
         return _course(Channels(path))
@@ -43,8 +43,8 @@ def read_course(path: Path) -> Course:
 
 
 def _course(recording: Channels) -> Course:
-    given = ["T_driver", *(quantity for quantity in (*OPTIONAL, "v") if recording.has(quantity))]
-    channels = recording.read(*given, optional=given[1:], drawn=True)
+    quantities = ["T_driver", *(quantity for quantity in (*OPTIONAL, "v") if recording.has(quantity))]
+    channels = recording.read(*quantities, optional=quantities[1:], drawn=True)
     time, values = aligned(channels, base="T_driver")
     v_0 = float(values.pop("v")[0]) if "v" in values else 0.0
     if "slope" in values:

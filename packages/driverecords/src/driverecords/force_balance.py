@@ -1,4 +1,4 @@
-"""Balance of the forces along the road: that of `harness.manoeuvres.speed_following`. What the motion takes,
+"""Balance of the forces along the road: what the motion takes,
 1.09 m dv/dt + m g c_rr + c_wa v^2, follows what the motor gives, i T_mot/r. Brakes and grade blur it. So it is compared
 without the parts that are faster than SMOOTHING, over all that moves for the sign, and for the size where the motor
 pushes harder than FORCE, when no driver brakes. Means over EVERY are enough for that.
@@ -19,7 +19,7 @@ RATIOS = (
 
 
 class Car(Protocol):
-    """What of the vehicle the balance of forces needs, see `harness.manoeuvres.road_load.RoadLoad`."""
+    """What of the vehicle the balance of forces needs."""
 
     def motor_force(self, T_mot: np.ndarray) -> np.ndarray:
         """Force in N with which the motor pushes."""
@@ -79,6 +79,7 @@ def forces(time: np.ndarray, v: np.ndarray, T_mot: np.ndarray, car: Car) -> Forc
     """Those of a motion (m/s over s) and the torque of the motor (N.m)."""
     from scipy.ndimage import gaussian_filter1d
 
+    # all samples of 6 min at 1 kHz took 1.3 s, of a torque that is too small 7.6 s; means over EVERY take 0.1 s
     count = max(1, min(int(EVERY / interval_of(time)), len(time) // LEAST))
     time, v, T_mot = (x[: len(x) // count * count].reshape(-1, count).mean(axis=1) for x in (time, v, T_mot))
     interval = interval_of(time)
@@ -118,13 +119,15 @@ def balance(along: Forces, torque: float = 1.0) -> Balance:
     """How what the motion takes and what the motor gives fit together, with a factor on the torque."""
     takes, gives, rolls = along.takes, torque * along.gives, along.rolls
     pushes = rolls & (gives > FORCE)
-    found = Balance(worst=float(along.time[np.argmax(np.where(rolls, np.abs(takes - gives), 0.0))]))
+    result = Balance(worst=float(along.time[np.argmax(np.where(rolls, np.abs(takes - gives), 0.0))]))
     if rolls.sum() >= LEAST:
-        taken, given = (np.maximum(force[rolls], 0.0) for force in (takes, gives))
-        found = found._replace(driven=float(np.std(taken)), with_motor=compared(taken, given)[0])
+        # what drives a car is its motor or a hill, never a brake: a torque that stays where it is, or is a minute late,
+        # shows
+        drive_force, motor_force = (np.maximum(force[rolls], 0.0) for force in (takes, gives))
+        result = result._replace(driven=float(np.std(drive_force)), with_motor=compared(drive_force, motor_force)[0])
     if rolls.sum() >= LEAST and np.std(gives[rolls]) > FORCE:
-        found = found._replace(correlation=compared(takes[rolls], gives[rolls])[0])
+        result = result._replace(correlation=compared(takes[rolls], gives[rolls])[0])
     if pushes.sum() >= LEAST and max(np.std(gives[pushes]), np.std(takes[pushes])) > FORCE:
         together, ratio = compared(takes[pushes], gives[pushes])
-        found = found._replace(judged=True, together=together, ratio=ratio, moved=float(np.std(takes[pushes])))
-    return found
+        result = result._replace(judged=True, together=together, ratio=ratio, moved=float(np.std(takes[pushes])))
+    return result

@@ -19,6 +19,7 @@ from .text_file import TextFile
 KINDS = dict.fromkeys(MARKS, MdfFile) | {PARQUET: ArrowFile, FEATHER: ArrowFile}
 """By the bytes with which the file begins; what begins otherwise is text."""
 
+# an Excel workbook was taken for text
 FOREIGN = {
     b"\xd0\xcf\x11\xe0": "an Excel workbook or another document of Office",
     b"\x89HDF": "an HDF5 file, such as one of MATLAB 7.3",
@@ -113,6 +114,7 @@ def _begin(path: Path) -> bytes:
 
 
 def _kind(begin: bytes) -> Any:
+    # logs first: candump, ASC and TRC are text too
     if kind_of(begin):
         return BusLog
     return next((kind for mark, kind in KINDS.items() if begin.startswith(mark)), TextFile)

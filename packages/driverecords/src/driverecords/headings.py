@@ -20,11 +20,11 @@ TAG = re.compile(
 def split(heading: str) -> tuple[str, str | None]:
     """Name, and unit if one stands behind it in brackets of any kind."""
     heading = TAG.sub("", heading).strip(" :")
-    found = IN_BRACKETS.fullmatch(heading)
-    if not found:
+    match = IN_BRACKETS.fullmatch(heading)
+    if not match:
         return heading, None
-    unit = next(each for each in found.groups()[1:] if each is not None)
-    return OPENING.sub("", found["name"]).strip(), re.sub("^unit: *", "", unit.strip()) or None
+    unit = next(group for group in match.groups()[1:] if group is not None)
+    return OPENING.sub("", match["name"]).strip(), re.sub("^unit: *", "", unit.strip()) or None
 
 
 OPENING = re.compile(r"\s*/\s*$|\s+in\s*$")
@@ -42,8 +42,9 @@ def without_brackets(name: str) -> Iterator[tuple[str, str]]:
     """Name and unit as they may stand in a heading without brackets: `T / Nm`, `v/(km/h)`, `T in Nm`, `v_kmh`, and
     `v_km_h` or, as R writes it, `v..km.h.` for km/h. Whether the unit is one is not asked."""
     for form in BEHIND:
-        if found := form.fullmatch(name):
-            yield found["name"].strip(), found["unit"].strip(" ()")
+        if match := form.fullmatch(name):
+            yield match["name"].strip(), match["unit"].strip(" ()")
+    # MATLAB makes Velocity__km_h_ of `Velocity [km/h]`, R Velocity..km.h.
     words = [word for word in re.split(r"[._]+", name) if word]
     for count in range(1, min(len(words), 3)):
         yield "_".join(words[:-count]), "/".join(words[-count:])
@@ -56,8 +57,8 @@ DEVICE = re.compile(r"(.*::)?([^\\]+?)(\s*\\.*)?", re.DOTALL)
 def key(name: str) -> str:
     """The same for names that differ in case, blanks, marks between words and their device alone (`MotorTorque`,
     `Motor-Torque`), or in how an umlaut is written. A minus before a name stays: the sign is the other."""
-    found = DEVICE.fullmatch(name)
-    return normalize("NFC", re.sub(r"[\s_./\u200b\ufeff]|(?!^)-", "", (found[2] if found else name).strip()).casefold())
+    match = DEVICE.fullmatch(name)
+    return normalize("NFC", re.sub(r"[\s_./\u200b\ufeff]|(?!^)-", "", (match[2] if match else name).strip()).casefold())
 
 
 def last_part(name: str) -> str:

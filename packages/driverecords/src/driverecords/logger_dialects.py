@@ -44,6 +44,7 @@ def _labview(lines: Sequence[str], path: Path) -> Dialect:
         raise RecordingError(
             f"{path} has no time that is that of all its channels; save it with `X Value Columns: One`"
         )
+    # a German LabVIEW writes commas, and says so
     mark = named.get("Decimal_Separator", ["", "."])[1].strip()
     units = ["s", *(unit.strip() for unit in named.get("Y_Unit_Label", [""])[1:])]
     names = rows[place]
@@ -67,8 +68,10 @@ def _vbox(lines: Sequence[str], path: Path) -> Dialect:
         raise RecordingError(f"{path} names no columns")
     line = parts["column names"][0]
     names = lines[line].split()
+    # the channels of the user alone, which are the last ones
     own = [lines[k].strip() for k in parts.get("channel units", [])]
     units = [VBOX.get(name, "") for name in names[: len(names) - len(own)]] + own
+    # 101557.00, a time of day that looks like a number
     clocks = tuple(name == "time" for name in names)
     decimal = decimal_of([cell for row in lines[first : first + LOOKED_AT] for cell in row.split()])
     return Dialect(" ", decimal, tuple(names), tuple(units[-len(names) :]), clocks, line + 1, first + 1)

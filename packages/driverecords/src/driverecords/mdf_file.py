@@ -44,17 +44,17 @@ class MdfFile:
         self.path = path
         self.headings = str(path)
         with _opened(path) as file:
-            found = list(_channels(file))
-            self._master_factors = {group: _master_factor(file, group) for group, _, _ in found}
-        often = Counter(channel.name for _, _, channel in found)
-        self._places = [(group, index) for group, index, _ in found]
+            channels = list(_channels(file))
+            self._master_factors = {group: _master_factor(file, group) for group, _, _ in channels}
+        often = Counter(channel.name for _, _, channel in channels)
+        self._places = [(group, index) for group, index, _ in channels]
         self.columns: Sequence[Column] = [
             _column(channel, f"{channel.name}, group {group + 1}" if often[channel.name] > 1 else channel.name)
-            for group, _, channel in found
+            for group, _, channel in channels
         ]
 
     def read(self, places: Sequence[int]) -> list[Samples]:
-        """See `harness.recordings.source.Source.read`. Samples that the logger has marked as invalid are left out;
+        """See `driverecords.source.Source.read`. Samples that the logger has marked as invalid are left out;
         those for which a conversion gives a text are none; channels of a group have the same array of times."""
         times: dict[int, np.ndarray] = {}
         with _opened(self.path) as file:
@@ -89,7 +89,7 @@ def _opened(path: Path) -> Iterator[Any]:
         damage = plain(MAPPED.sub(path.name, str(error)), 200) or type(error).__name__
     finally:
         if damage:
-            gc.collect()
+            gc.collect()  # its messages come while they are still kept back
         sys.unraisablehook = before
     if damage:
         raise RecordingError(f"{path} is a damaged MDF file: {damage}")
@@ -97,12 +97,14 @@ def _opened(path: Path) -> Iterator[Any]:
 
 def _master_factor(file: Any, group: int) -> float:
     """Of the times of a group to s, in which they are unless their unit says something else."""
+    # times in ms occur
     unit = file.groups[group].channels[file.masters_db[group]].unit
     return factor(unit, "s") if unit and converts(unit, "s") else 1.0
 
 
 def _clock(start: datetime) -> Clock | None:
     """What the clock of the logger says at 0; None of a file that does not say."""
+    # where nothing was written it is 1970
     if start.year < 1990:
         return None
     return Clock(start.toordinal(), 3600.0 * start.hour + 60.0 * start.minute + start.second + 1e-6 * start.microsecond)
@@ -121,5 +123,6 @@ def _channels(file: Any) -> Iterator[tuple[int, int, Any]]:
 
 def _column(channel: Any, heading: str) -> Column:
     name, unit = split(channel.name)
+    # versions 2 and 3 have the unit in the conversion alone
     own = channel.unit or getattr(channel.conversion, "unit", "") or unit or ""
     return Column(plain(heading, 60), plain(name, 60), plain(own, 60) or None)

@@ -8,9 +8,9 @@ import numpy as np
 
 from .alignment import aligned, is_slower
 from .bounded_reading import bounded
+from .channel_rules import of_channels
 from .channels import Channel, Channels
 from .file_units import FileUnit
-from .plausibility import of_channels
 from .relations import check_relations
 from .signal_checks import check_signal, too_slow
 from .source import RecordingError
@@ -105,6 +105,7 @@ def read_measurement(
     _require_columns(recording, BASE, "T_mot", *wheels)
     held = [quantity for quantity in HELD if recording.has(quantity)]
     needed = (BASE, "T_mot", *wheels, *loads, *held)
+    # one gap made a recording useless, though the filter can begin anew behind it
     pieces, breaks = recording.read_pieces(*needed, optional=(*loads, *held), shortest=PIECE)
     pieces.sort(key=lambda piece: -np.ptp(piece[BASE].time))
     channels = pieces[0]  # the longest, by which the recording is judged
@@ -131,9 +132,8 @@ def read_measurement(
     parts.sort(key=lambda part: part["time"][0])
     values = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     headings = {quantity: channels[quantity].heading for quantity in ("T_mot", BASE, "T_ref") if quantity in channels}
-    headings |= {
-        q: " and ".join(channels[one].heading for one in of) for q, of in (("omega_2", wheels), ("T_load", loads))
-    }
+    for quantity, measured in (("omega_2", wheels), ("T_load", loads)):
+        headings[quantity] = " and ".join(channels[wheel].heading for wheel in measured)
     check_relations(path, headings, interval_of(longest["time"]), signals)
     return Measurement(
         path.stem,
@@ -153,7 +153,7 @@ def read_measurement(
 
 def _between(breaks: Sequence[Break], pieces: int) -> list[str]:
     """What to say of what is between pieces."""
-    what = [each.problem for each in breaks[:NAMED]]
+    what = [break_.problem for break_ in breaks[:NAMED]]
     if breaks[NAMED:]:
         what.append(f"and {len(breaks) - NAMED} more")
     used = f"{pieces} pieces are" if pieces > 1 else "one piece is"
@@ -164,6 +164,7 @@ def _require_columns(recording: Channels, *needed: str) -> None:
     """Refuses a recording with columns that are missing, and says too which samples are too far apart."""
     if missing := recording.missing(*needed):
         there = [] if "time" in missing else [quantity for quantity in needed if quantity not in missing]
+        # else the rate is refused in the try after the last column is named
         slow = filter(None, map(too_slow, recording.read(*there).values() if there else ()))
         raise RecordingError("; ".join([str(recording.absence(missing)), *slow]))
 
@@ -177,21 +178,21 @@ def _written(
     channels: Mapping[str, Channel], wheels: Sequence[str], loads: Sequence[str], i: float, r: float
 ) -> dict[str, FileUnit]:
     """What is on the motor side in the recording is in the file where it was measured."""
-    found = {quantity: channels[quantity].file_unit for quantity in ("T_mot", BASE)}
+    units = {quantity: channels[quantity].file_unit for quantity in ("T_mot", BASE)}
     wheel = channels[wheels[0]]
     if wheels == ("omega_2",):
-        found["omega_2"] = wheel.file_unit._replace(side="motor side")
+        units["omega_2"] = wheel.file_unit._replace(side="motor side")
     elif wheel.unit == "m/s":
-        found["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i / r, "over ground")
+        units["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i / r, "over ground")
     else:
-        found["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i, "wheel side")
+        units["omega_2"] = FileUnit(wheel.file_unit.unit, wheel.file_unit.factor * i, "wheel side")
     if loads:
         load = channels[loads[0]].file_unit
         at_motor = loads == ("T_load",)
-        found["T_load"] = load._replace(
+        units["T_load"] = load._replace(
             factor=load.factor if at_motor else load.factor / i, side="motor side" if at_motor else "wheel side"
         )
-    return found
+    return units
 
 
 def _wheel_speed(

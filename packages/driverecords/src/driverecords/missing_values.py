@@ -25,6 +25,7 @@ def _ends(bits: Iterable[int], reserved: int) -> set[float]:
     }
 
 
+# J1939 keeps the largest for "not available" and the next for "error"
 ENDS, RESERVED = _ends((8, 12, 16, 32), 1), _ends((*range(8, 17), 20, 24, 32, 48, 64), 2)
 """Of the integers that are usual, and of all in which signals are sent, with what else is kept for errors there."""
 
@@ -56,6 +57,7 @@ LATE = Threshold(
 )
 
 
+# numbers that are nearly 0 among others ended in a traceback
 MOST_STEPS = 2.0**53
 
 
@@ -97,6 +99,7 @@ def coded(written: np.ndarray) -> np.ndarray:
     distance = np.maximum(others[0] - outer, outer - others[-1])
     far = sure & (distance > ALONE * np.ptp(others))
     if len(others) >= MEASURED:
+        # 12.6 N.m was a code of 8 bits once, at the range of all others
         far |= perhaps & (distance > SCALED * np.ptp(others))
     return np.isin(written, outer[far & (distance > 0.0)])
 
@@ -130,8 +133,9 @@ def holes(time: np.ndarray, values: np.ndarray, longest: float, held: bool) -> H
     if not len(steps) or len(there) == len(values):
         return Holes(values, none, [])
     interval = float(np.median(steps))
-    found = np.flatnonzero((steps > LATE * interval) & (np.diff(there) > 1))
-    short = found[steps[found] - interval <= longest * (1.0 + 1e-6)]
+    gaps = np.flatnonzero((steps > LATE * interval) & (np.diff(there) > 1))
+    # the last digits of written times must not decide
+    short = gaps[steps[gaps] - interval <= longest * (1.0 + 1e-6)]
     between = ((int(there[k]) + 1, int(there[k + 1])) for k in short)
     filled = np.concatenate([none, *(np.arange(first, end) for first, end in between)])
     values = values.copy()
@@ -139,4 +143,4 @@ def holes(time: np.ndarray, values: np.ndarray, longest: float, held: bool) -> H
         values[filled] = values[there[np.searchsorted(there, filled) - 1]]
     else:
         values[filled] = np.interp(time[filled], time[there], values[there])
-    return Holes(values, filled, [(int(there[k]), int(there[k + 1])) for k in np.setdiff1d(found, short)])
+    return Holes(values, filled, [(int(there[k]), int(there[k + 1])) for k in np.setdiff1d(gaps, short)])

@@ -113,6 +113,7 @@ def of_drive(drive: Drive, car: Car | None = None, T_max: float = inf) -> list[F
         T_max: largest torque of its motor in N.m.
     """
     motion = list(too_short(drive)) or (list(unbalanced(drive, car)) if car else [])
+    # ms called s are a slow rate as well, whose line stood before the one that explains it
     rate = [] if any(finding.rule in (SLOW_TIME, FAST_TIME) for finding in motion) else slow_sampling(drive)
     return [*of_channels(drive.channels.values()), *rate, *beyond_T_max(drive, T_max), *motion]
 
@@ -171,42 +172,44 @@ def unbalanced(drive: Drive, car: Car) -> Iterator[Finding]:
         return weak.fits and weak.moved > FORCE
 
     along = forces(drive.time, drive.v, drive.T_mot, car)
-    found, torque = balance(along), drive.heading("T_mot")
-    at = found.worst
-    if found.correlation < -SIGNED:
+    result, torque = balance(along), drive.heading("T_mot")
+    at = result.worst
+    if result.correlation < -SIGNED:
         odd = (
-            f"pushes when the car slows down, and the reverse (correlation {found.correlation:.2f}): its sign looks "
-            f"wrong; {_given('T_mot', f'-{torque}')} turns it"
+            f"pushes when the car slows down, and the reverse (correlation {result.correlation:.2f}): its sign looks "
+            f"wrong; {_column_option('T_mot', f'-{torque}')} turns it"
         )
         yield Finding(SIGN, torque, at, odd)
-    elif found.judged and found.together < TOGETHER and MS * interval_of(drive.time) >= SHORTEST and fits(time=MS):
+    # in ms the Gaussian would go over a million samples: 10 min at 1 kHz would take half an hour
+    elif result.judged and result.together < TOGETHER and MS * interval_of(drive.time) >= SHORTEST and fits(time=MS):
         clock = drive.clock
         odd = (
             f"goes on by {interval_of(drive.time):.4g} s a sample, and motion and torque fit if that is ms: its unit "
-            f"looks wrong; {_given('time', f'{split(clock)[0]} [ms]')} gives it"
+            f"looks wrong; {_column_option('time', f'{split(clock)[0]} [ms]')} gives it"
         )
         yield Finding(SLOW_TIME, clock, float(drive.time[0]), odd)
-    elif found.judged and found.together >= TOGETHER and found.ratio > LARGEST and fits(v=1.0 / KMH):
+    elif result.judged and result.together >= TOGETHER and result.ratio > LARGEST and fits(v=1.0 / KMH):
         speed = drive.heading("v")
         odd = (
-            f"changes as if the motor had {found.ratio:.2g} times its torque, and fits if it is {KMH:g} times too "
-            f"large, km/h called m/s ({_given('v', f'{split(speed)[0]} [km/h]')}); else torque, i, r or m are wrong"
+            f"changes as if the motor had {result.ratio:.2g} times its torque, and fits if it is {KMH:g} times too "
+            f"large, km/h called m/s ({_column_option('v', f'{split(speed)[0]} [km/h]')}); else torque, i, r or m are "
+            "wrong"
         )
         yield Finding(FAST, speed, at, odd)
-    elif found.judged and found.together >= TOGETHER and not found.fits:
+    elif result.judged and result.together >= TOGETHER and not result.fits:
         odd = (
-            f"gives {1.0 / found.ratio:.2g} times what the motion takes (correlation {found.together:.2f}): its unit "
+            f"gives {1.0 / result.ratio:.2g} times what the motion takes (correlation {result.together:.2f}): its unit "
             "or the side of the gear looks wrong, else the unit of the speed, or i, r, m of the car"
         )
         yield Finding(RATIO, torque, at, odd)
-    elif not found.judged and (weak := next(filter(is_weak, WEAK), None)):
-        given = _given("T_mot", f"{split(torque)[0]} [kNm]")
-        unit = f"kN.m called N.m ({given})" if weak == WEAK[-1] else "its unit or the side of the gear looks wrong"
+    elif not result.judged and (weak := next(filter(is_weak, WEAK), None)):
+        option = _column_option("T_mot", f"{split(torque)[0]} [kNm]")
+        unit = f"kN.m called N.m ({option})" if weak == WEAK[-1] else "its unit or the side of the gear looks wrong"
         odd = f"gives about 1/{weak:g} of what the motion takes, and follows it otherwise: {unit}"
         yield Finding(RATIO, torque, at, odd)
-    elif found.driven > LIVELY and found.with_motor < OWN:
+    elif result.driven > LIVELY and result.with_motor < OWN:
         odd = (
-            f"has nothing to do with what drives the car (correlation {found.with_motor:.2f}): it looks like that of "
+            f"has nothing to do with what drives the car (correlation {result.with_motor:.2f}): it looks like that of "
             "another drive or channel, or is late"
         )
         yield Finding(OTHER, torque, at, odd)
@@ -231,6 +234,6 @@ def not_followed(drive: Drive, time: np.ndarray, v: np.ndarray) -> list[Finding]
     return [Finding(FOLLOWING, drive.heading("v"), float(drive.time[0] + time[k]), odd)]
 
 
-def _given(quantity: str, heading: str) -> str:
+def _column_option(quantity: str, heading: str) -> str:
     """The option that says what a column holds."""
     return f"--column {quantity}={quote(heading)}"

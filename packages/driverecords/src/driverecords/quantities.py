@@ -22,6 +22,7 @@ Aliases = Mapping[str, Sequence[str]]
 
 BY_UNIT: Mapping[str, Sequence[str]] = {
     "time": (
+        # where no other column is the time: a date beside `Time [s]` makes no two of it
         "Date",
         "Datum",
         "Datetime",
@@ -29,7 +30,7 @@ BY_UNIT: Mapping[str, Sequence[str]] = {
         "Datum Zeit",
         "Uhrzeit",
         "Index",
-        "__index_level_0__",
+        "__index_level_0__",  # the index of a table of pandas
         "x",
         "",
     ),
@@ -50,6 +51,7 @@ ANOTHER = frozenset((*OTHERS.split(), "lead", "rear", "front"))
 
 def is_of_another(path: str) -> bool:
     """Whether a path before a name tells that it is no measured quantity of this car."""
+    # words in camel case too: RequestValues/Motor Torque was read as the torque
     return any(word.removesuffix("s") in ANOTHER for word in words_of(path))
 
 
@@ -138,8 +140,8 @@ def aliases(*others: Path) -> Aliases:
         for quantity, more in _read(path).items():
             names[quantity] += more
     taken: dict[str, str] = {}
-    for quantity, given in names.items():
-        for name in given:
+    for quantity, spellings in names.items():
+        for name in spellings:
             if taken.setdefault(key(name), quantity) != quantity:
                 file = ", ".join(map(str, others))
                 raise RecordingError(f"{file}: {plain(name, 60)} names both {taken[key(name)]} and {quantity}")

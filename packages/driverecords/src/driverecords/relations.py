@@ -100,9 +100,9 @@ def check_relations(
     """
     _check_links(path, headings, interval, signals)
     _check_speeds(path, headings, signals)
-    for one in SLOW_TORQUES:
-        if one.name in signals:
-            _check_torque(path, headings, interval, signals, one)
+    for torque in SLOW_TORQUES:
+        if torque.name in signals:
+            _check_torque(path, headings, interval, signals, torque)
 
 
 def links(interval: float, signals: Mapping[str, np.ndarray]) -> dict[tuple[str, str], float]:
@@ -116,10 +116,11 @@ def links(interval: float, signals: Mapping[str, np.ndarray]) -> dict[tuple[str,
 
 
 def _check_links(path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray]) -> None:
-    found = links(interval, signals)
-    T, omega = max(found, key=lambda pair: abs(found[pair]))
-    link = found[T, omega]
+    correlations = links(interval, signals)
+    T, omega = max(correlations, key=lambda pair: abs(correlations[pair]))
+    link = correlations[T, omega]
     expected = (T, omega) == ("T_mot", "omega_1")
+    # a car with a wide gap was refused for channels that were not exchanged
     if abs(link) < (LINK if expected else OTHERS):
         return  # too little excitation to tell
     finding = f"{headings[omega]} follows {headings[T]} (correlation {link:.2f} from {FAST[0]:g} to {FAST[1]:g} Hz)"
@@ -179,17 +180,17 @@ SLOW_TORQUES = (
 
 
 def _check_torque(
-    path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray], one: SlowTorque
+    path: Path, headings: Mapping[str, str], interval: float, signals: Mapping[str, np.ndarray], torque: SlowTorque
 ) -> None:
-    heading, of_motor = headings[one.name], headings["T_mot"]
-    slow = (low(signals[name], interval, SLOW) for name in (one.name, "T_mot"))
+    heading, of_motor = headings[torque.name], headings["T_mot"]
+    slow = (low(signals[name], interval, SLOW) for name in (torque.name, "T_mot"))
     correlation, size = compared(*slow)
-    if one.sign * correlation < -OPPOSED:
+    if torque.sign * correlation < -OPPOSED:
         raise RecordingError(
-            f"{path}: {heading} {one.contrary} {of_motor} (correlation {correlation:.2f} below {SLOW:g} Hz): {one.so}; "
-            f"{TURNS}"
+            f"{path}: {heading} {torque.contrary} {of_motor} (correlation {correlation:.2f} below {SLOW:g} Hz): "
+            f"{torque.so}; {TURNS}"
         )
-    if one.sign * correlation > OPPOSED and not 1.0 / SIZE <= size <= SIZE:
+    if torque.sign * correlation > OPPOSED and not 1.0 / SIZE <= size <= SIZE:
         raise RecordingError(
             f"{path}: {heading} is {size:.3g} times as large as {of_motor}, motor side: the unit of one or the gear "
             f"ratio is not what it is said to be, or it is not on the side that its name says; {SAYS}"

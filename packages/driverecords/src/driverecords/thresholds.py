@@ -17,6 +17,6 @@ class Threshold(float):
     source: str
 
     def __new__(cls, value: float, unit: str, of: str, source: str) -> Self:
-        one = super().__new__(cls, value)
-        one.unit, one.of, one.source = unit, of, source
-        return one
+        threshold = super().__new__(cls, value)
+        threshold.unit, threshold.of, threshold.source = unit, of, source
+        return threshold

@@ -11,6 +11,7 @@ from .clock_times import Clock
 from .source import RecordingError
 from .thresholds import Threshold
 
+# times 1e300 ended in a ZeroDivisionError of scipy, times 1e-320 in an OverflowError of the balance of forces
 INTERVALS = (1e-6, 1e6)
 """In s, of a recording: times in another unit than they are called are within, and filters of signals can be made."""
 
@@ -22,7 +23,7 @@ OFTEN = Threshold(
 )
 
 
-def typed(time: float) -> str:
+def time_text(time: float) -> str:
     """A time in s without the last digits, as it is typed."""
     return f"{round(time, 9):.15g}"
 
@@ -49,7 +50,7 @@ class Cut(NamedTuple):
         """
         if self == WHOLE:
             return np.isfinite(time)
-        first, last = (self._second(each, time, begin) for each in self)
+        first, last = (self._second(limit, time, begin) for limit in self)
         inside = np.isfinite(time)
         # the last digits of written times must not decide
         if first is not None:
@@ -57,13 +58,13 @@ class Cut(NamedTuple):
         if last is not None:
             inside &= time <= last + 1e-12 * abs(last) + 1e-9
         if not inside.any():
-            given = " ".join(
+            options = " ".join(
                 f"--{name} {limit}" for name, limit in zip(("from", "to"), self, strict=True) if limit is not None
             )
             clock = f" ({begin} at 0)" if begin else ""
             raise ValueError(
-                f"no sample is within {given}; it goes from {typed(float(np.nanmin(time)))} to "
-                f"{typed(float(np.nanmax(time)))} s{clock}"
+                f"no sample is within {options}; it goes from {time_text(float(np.nanmin(time)))} to "
+                f"{time_text(float(np.nanmax(time)))} s{clock}"
             )
         return inside
 
@@ -98,7 +99,7 @@ class Break(NamedTuple):
     advice: str = ""
 
 
-def around(time: np.ndarray, first: int, last: int, problem: str) -> Break:
+def break_around(time: np.ndarray, first: int, last: int, problem: str) -> Break:
     """A break at the samples between two indices, these included."""
     low, high = time[first : last + 1].min(), time[first : last + 1].max()
     before, after = time[time < low], time[time > high]
@@ -108,13 +109,13 @@ def around(time: np.ndarray, first: int, last: int, problem: str) -> Break:
 def clean_pieces(begin: float, end: float, breaks: Iterable[Break]) -> list[tuple[float, float]]:
     """The times in s without a break, from when to when."""
     pieces, at = [], begin
-    for each in sorted(breaks):
-        pieces.append((at, min(each.end, end)))
-        at = max(at, each.begin)
+    for break_ in sorted(breaks):
+        pieces.append((at, min(break_.end, end)))
+        at = max(at, break_.begin)
     return [piece for piece in [*pieces, (at, end)] if piece[1] > piece[0]]
 
 
-def spread(time: np.ndarray) -> np.ndarray:
+def spread_equal_times(time: np.ndarray) -> np.ndarray:
     """Times (n,) in s of which those that are equal, because the clock is coarse, are spread up to the next one.
 
     Where all times are those of a steady clock within that resolution, they are its times. Single equal ones are left.
@@ -152,27 +153,26 @@ def time_breaks(
     """
     steps = np.diff(time)
     backward = np.flatnonzero((steps < 0.0) | ((steps == 0.0) & (not jumps)))
-    found = []
+    breaks = []
     for k in backward[:MOST].tolist():
-        problem = (
-            f"{path}, {where(k + 1)}: time {typed(float(time[k + 1]))} s does not come after {typed(float(time[k]))} s"
-        )
-        found.append(around(time, k, k + 1, problem) if len(backward) <= MOST else Break(-inf, inf, problem))
+        before, after = time_text(float(time[k])), time_text(float(time[k + 1]))
+        problem = f"{path}, {where(k + 1)}: time {after} s does not come after {before} s"
+        breaks.append(break_around(time, k, k + 1, problem) if len(backward) <= MOST else Break(-inf, inf, problem))
     if jumps:
-        return found
+        return breaks
     median = float(np.median(steps))
     least, most = INTERVALS
-    if not found and not least <= median <= most:
+    if not breaks and not least <= median <= most:
         raise RecordingError(
             f"{path}, {where(1)}: the sample interval is {median:g} s; {least:g} to {most:g} s are allowed"
         )
     gaps = np.flatnonzero(steps > gap * median) if isfinite(gap) and median > 0.0 else np.empty(0, dtype=int)
-    return found + [
+    return breaks + [
         Break(
             float(time[k]),
             float(time[k + 1]),
-            f"{path}, {where(k + 1)}: gap of {steps[k]:g} s after {typed(float(time[k]))} s; at most {gap * median:g} "
-            f"s ({gap:g} times the median step) is allowed",
+            f"{path}, {where(k + 1)}: gap of {steps[k]:g} s after {time_text(float(time[k]))} s; at most "
+            f"{gap * median:g} s ({gap:g} times the median step) is allowed",
         )
         for k in gaps.tolist()
     ]

@@ -27,7 +27,7 @@ OTHER_NAMES = {
 IN_PYTHON = {"fabs": "abs(x)", "pow": "x ** y", "fmod": "x % y"}
 """Functions of math, and what does the same without an operator."""
 
-OPERATORS = {name for name, each in vars(operators).items() if isfunction(each) and name[0] != "_"} - {"symbol"}
+OPERATORS = {name for name, value in vars(operators).items() if isfunction(value) and name[0] != "_"} - {"symbol"}
 
 CHOICES: dict[type[ast.AST], str] = {ast.And: "logical_and", ast.Or: "logical_or", ast.Not: "logical_not"}
 
@@ -37,7 +37,7 @@ def operator_meant(error: Exception) -> str:
     frames = extract_tb(error.__traceback__)
     branches = frames[-1].filename == symbol.__file__
     if not isinstance(error, TypeError) or not (
-        branches or any(each.__name__ in str(error) for each in symbol.Symbol.__subclasses__())
+        branches or any(kind.__name__ in str(error) for kind in symbol.Symbol.__subclasses__())
     ):
         return ""
     own = next((frame for frame in reversed(frames) if not _of_library(frame.filename)), None)
@@ -67,11 +67,11 @@ def _of_library(file: str) -> bool:
 def _nodes(frame: FrameSummary) -> Iterator[ast.AST]:
     """What a frame was computing, and what that is part of, the outermost last."""
     start, end = (frame.lineno or 0, frame.colno or 0), (frame.end_lineno or 0, frame.end_colno or 0)
-    found = list[ast.AST]()
+    nodes = list[ast.AST]()
     for node in ast.walk(ast.parse("".join(linecache.getlines(frame.filename)))):
         if isinstance(node, ast.expr | ast.stmt) and (node.lineno, node.col_offset) <= start:
-            found += [node] * ((node.end_lineno or 0, node.end_col_offset or 0) >= end)
-    yield from reversed(found)  # ast.walk goes down
+            nodes += [node] * ((node.end_lineno or 0, node.end_col_offset or 0) >= end)
+    yield from reversed(nodes)  # ast.walk goes down
 
 
 def _choice(node: ast.AST) -> str:

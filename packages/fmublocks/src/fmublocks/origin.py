@@ -72,10 +72,10 @@ def origin_entry(fmu: "Fmu", build: str) -> dict[str, bytes]:
 def origin_of(path: Path) -> Origin | None:
     """What the FMU at `path` tells; None if it tells nothing (it is somebody else's, or older than this)."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return _read(path.absolute(), found.st_ino, found.st_mtime_ns, found.st_size)
+    return _read(path.absolute(), status.st_ino, status.st_mtime_ns, status.st_size)
 
 
 @lru_cache(64)

@@ -6,10 +6,10 @@ from fmublocks.block.rodas import GAMMA, A, C, D, G
 
 
 def square(rows: tuple[tuple[float, ...], ...]) -> np.ndarray:
-    found = np.zeros((len(rows), len(rows)))
+    matrix = np.zeros((len(rows), len(rows)))
     for k, row in enumerate(rows):
-        found[k, : len(row)] = row
-    return found
+        matrix[k, : len(row)] = row
+    return matrix
 
 
 def test_times_and_weights_of_the_rate_are_the_sums_of_the_stages() -> None:

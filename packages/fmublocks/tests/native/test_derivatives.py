@@ -67,9 +67,9 @@ def of_two(function: Callable[..., Any]) -> tuple[Recording, list[int], list[int
 def test_a_rate_is_what_a_small_step_along_it_makes(function: Callable[..., Any], along: tuple[float, float]) -> None:
     recording, inputs, moving, value = of_two(function)
     (rate,) = rates(recording, [value], dict(zip(inputs, moving, strict=True)))
-    found = float(values(recording, [rate], lambda vector, k: (AT, along)[vector][k])[rate])
+    slope = float(values(recording, [rate], lambda vector, k: (AT, along)[vector][k])[rate])
     ahead, behind = ([at + s * STEP * d for at, d in zip(AT, along, strict=True)] for s in (1.0, -1.0))
-    assert found == pytest.approx((function(*ahead) - function(*behind)) / (2.0 * STEP), rel=1e-7, abs=1e-7)
+    assert slope == pytest.approx((function(*ahead) - function(*behind)) / (2.0 * STEP), rel=1e-7, abs=1e-7)
 
 
 def test_what_does_not_move_takes_no_operation() -> None:

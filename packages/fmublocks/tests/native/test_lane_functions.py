@@ -75,13 +75,13 @@ def test_they_are_as_exact_as_those_of_the_c_library(functions, name):
     x = np.append(np.abs(x) if name == "log" else x, SPECIAL)
     with np.errstate(all="ignore"):
         right = getattr(np, {"atan": "arctan"}.get(name, name))(x)
-    found = functions(f"{name}s", x)
-    assert np.array_equal(np.isfinite(found), np.isfinite(right))
-    assert np.array_equal(np.isnan(found), np.isnan(right))
+    results = functions(f"{name}s", x)
+    assert np.array_equal(np.isfinite(results), np.isfinite(right))
+    assert np.array_equal(np.isnan(results), np.isnan(right))
     finite = np.isfinite(right)
     size = np.abs(right[finite]) if name in ("exp", "log", "atan") else np.ones(finite.sum())
-    assert (np.abs(found[finite] - right[finite]) <= 4e-16 * size).all()
-    assert np.array_equal(found[~finite & ~np.isnan(right)], right[~finite & ~np.isnan(right)])
+    assert (np.abs(results[finite] - right[finite]) <= 4e-16 * size).all()
+    assert np.array_equal(results[~finite & ~np.isnan(right)], right[~finite & ~np.isnan(right)])
 
 
 def test_the_remainder_is_that_of_python(functions):

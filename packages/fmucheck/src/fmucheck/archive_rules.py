@@ -36,8 +36,8 @@ def _refusing(name: str, title: str, clause: Clause = OURS) -> Rule:
     """What `harness.cosimulation.fmu_archive` refuses under that name."""
 
     def problems(fmu: Archive) -> Iterator[str]:
-        found = fmu_archive.problems(fmu.entries, fmu.limits)
-        return (problem.text for problem in found if problem.rule == name)
+        problems_there = fmu_archive.problems(fmu.entries, fmu.limits)
+        return (problem.text for problem in problems_there if problem.rule == name)
 
     return Rule(name, Severity.ERROR, title, clause, problems)
 

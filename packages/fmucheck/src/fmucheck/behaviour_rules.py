@@ -41,13 +41,13 @@ def _differences(expected: list[Outputs], actual: list[Outputs], when: str, tole
     """Each output that differs by more than the relative tolerance, at the first step at which it does."""
     reported: set[str] = set()
     for k, (before, after) in enumerate(zip(expected, actual, strict=True)):
-        for (name, one), (_, other) in zip(before, after, strict=True):
-            same = one == other or (one != one and other != other)
-            if not same and tolerance and isinstance(one, float):
-                same = abs(one - other) <= tolerance * max(abs(one), abs(other), 1.0)
+        for (name, value), (_, later) in zip(before, after, strict=True):
+            same = value == later or (value != value and later != later)
+            if not same and tolerance and isinstance(value, float):
+                same = abs(value - later) <= tolerance * max(abs(value), abs(later), 1.0)
             if not same and name not in reported:
                 reported.add(name)
-                yield f"{name} is {other} {when}, but was {one}, at step {k}"
+                yield f"{name} is {later} {when}, but was {value}, at step {k}"
 
 
 BEHAVIOUR_RULES = Rules()

@@ -68,7 +68,7 @@ def missing_symbols(fmu: Unpacked) -> Iterator[str]:
     if absent := list(dict.fromkeys(ABSENT.findall(said))):  # which may have what else is missing
         yield f"{binary.name} needs {', '.join(absent)}, which is not here, nor in the FMU"
         return
-    found = [next(filter(None, match.groups())) for match in MISSING.finditer(said)]
-    if found := list(dict.fromkeys(found)):
-        more = f" and {len(found) - MOST_NAMED} more" if found[MOST_NAMED:] else ""
-        yield f"{binary.name} needs {', '.join(found[:MOST_NAMED])}{more}, which no library has that it names"
+    missing = [next(filter(None, match.groups())) for match in MISSING.finditer(said)]
+    if missing := list(dict.fromkeys(missing)):
+        more = f" and {len(missing) - MOST_NAMED} more" if missing[MOST_NAMED:] else ""
+        yield f"{binary.name} needs {', '.join(missing[:MOST_NAMED])}{more}, which no library has that it names"

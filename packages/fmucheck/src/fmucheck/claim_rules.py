@@ -47,9 +47,9 @@ def version(fmu: Unpacked) -> Iterator[str]:
     """Version, and in FMI 2.0 the platform of types."""
     fmi, expected = fmu.interface.fmi, str(fmu.interface.description.fmiVersion)
     with initialized(fmu) as instance:
-        found = instance.call("getVersion")
-        if found.split(".")[:2] != expected.split(".")[:2]:
-            yield f"fmi{fmi}GetVersion answers {found!r}, and the description is of {expected}"
+        answer = instance.call("getVersion")
+        if answer.split(".")[:2] != expected.split(".")[:2]:
+            yield f"fmi{fmi}GetVersion answers {answer!r}, and the description is of {expected}"
         if fmi == 2 and (platform := instance.call("getTypesPlatform")) != "default":
             yield f'fmi2GetTypesPlatform answers {platform!r}; it must be "default"'
 
@@ -73,8 +73,8 @@ def functions(fmu: Unpacked) -> Iterator[str]:
 )
 def token(fmu: Unpacked) -> Iterator[str]:
     """Whether another guid or instantiationToken is refused."""
-    other, described = copy(fmu.interface), copy(fmu.interface.description)
-    described.guid, other.description = "{another}", described
+    other, model = copy(fmu.interface), copy(fmu.interface.description)
+    model.guid, other.description = "{another}", model
     try:
         with initialized(fmu._replace(interface=other)):
             yield f"it takes any {'guid' if fmu.interface.fmi == 2 else 'instantiationToken'}"
@@ -88,8 +88,8 @@ def token(fmu: Unpacked) -> Iterator[str]:
 def starts(fmu: Unpacked) -> Iterator[str]:
     """Values in initialization mode that are not those of the description. A local discrete variable may have another
     one: events of the initialization can change it."""
-    found = document(fmu.interface)
-    exact = [v for v in found.variables.values() if v.model.initial == "exact" and found.starts(v)]
+    doc = document(fmu.interface)
+    exact = [v for v in doc.variables.values() if v.model.initial == "exact" and doc.starts(v)]
     exact = [v for v in exact if v.type not in ("Clock", "Binary")]
     exact = [v for v in exact if (v.model.causality, v.model.variability) != ("local", "discrete")]
     scalars = [v for v in exact if v.is_scalar]
@@ -97,8 +97,8 @@ def starts(fmu: Unpacked) -> Iterator[str]:
         actual = {v.key: [value] for v, value in zip(scalars, values(instance, scalars), strict=True)}
         for variable in exact:
             if variable.key not in actual:
-                actual[variable.key] = _elements(instance, variable, found.size(variable))
-            for start, value in zip(found.starts(variable), actual[variable.key], strict=True):
+                actual[variable.key] = _elements(instance, variable, doc.size(variable))
+            for start, value in zip(doc.starts(variable), actual[variable.key], strict=True):
                 if not _starts_at(variable, start, value):
                     yield f"{variable.name} starts at {_text(value)}, in the description at {start}"
                     break
@@ -141,10 +141,10 @@ def _not_set(probe: Probe, known: Declared) -> Iterator[str]:
 )
 def independent(fmu: Unpacked) -> Iterator[str]:
     """Each known is moved, in initialization mode, at a communication point and in continuous-time mode."""
-    found: set[str] = set()
+    problems: set[str] = set()
     for mode in (initializing, elsewhere, *modes(fmu)):
-        found.update(each_known(fmu, mode, _depends))
-    yield from sorted(found)
+        problems.update(each_known(fmu, mode, _depends))
+    yield from sorted(problems)
 
 
 def _depends(probe: Probe, known: Declared) -> Iterator[str]:
@@ -163,8 +163,8 @@ def _depends(probe: Probe, known: Declared) -> Iterator[str]:
             if after[k] != before[k]:
                 yield f"{variable.name} depends on {known.name}, and does not say so"
         elif further and variable.type in REALS and unknown.kinds and unknown.kinds[on.index(known.key)] == "constant":
-            one, other = after[k] - before[k], further[k] - after[k]
-            if abs(one - other) > SMOOTH * max(abs(one), abs(other)) + NOISE * abs(before[k]):
+            near, far = after[k] - before[k], further[k] - after[k]
+            if abs(near - far) > SMOOTH * max(abs(near), abs(far)) + NOISE * abs(before[k]):
                 yield f"{variable.name} does not follow from {known.name} by a constant factor, as it says"
 
 
@@ -211,19 +211,19 @@ def _compared(probe: Probe, known: Declared, kind: str) -> Iterator[str]:
     of = known.model.valueReference
     try:
         if kind == "Directional":
-            given = [0.5 * d for d in probe.instance.call("getDirectionalDerivative", references, [of], [2.0])]
+            derivatives = [0.5 * d for d in probe.instance.call("getDirectionalDerivative", references, [of], [2.0])]
         else:
-            given = [0.5 * probe.instance.call("getAdjointDerivative", [r], [of], [2.0])[0] for r in references]
+            derivatives = [0.5 * probe.instance.call("getAdjointDerivative", [r], [of], [2.0])[0] for r in references]
     except SimulationError as error:
         yield str(error)
         return
-    for k, derivative in zip(reals, given, strict=True):
-        one, other, name = halves[0][k], halves[1][k], probe.unknowns[k][0].name
+    for k, derivative in zip(reals, derivatives, strict=True):
+        whole, half, name = halves[0][k], halves[1][k], probe.unknowns[k][0].name
         noise = NOISE * abs(before[k] or 1.0) / abs(size)
-        if abs(one - other) > SMOOTH * max(abs(one), abs(other)) + noise:
+        if abs(whole - half) > SMOOTH * max(abs(whole), abs(half)) + noise:
             continue  # an edge
-        if abs(derivative - other) > AGREES * max(abs(derivative), abs(other)) + noise:
-            yield f"the {kind.lower()} derivative of {name} by {known.name} is {derivative:g}, by differences {other:g}"
+        if abs(derivative - half) > AGREES * max(abs(derivative), abs(half)) + noise:
+            yield f"the {kind.lower()} derivative of {name} by {known.name} is {derivative:g}, by differences {half:g}"
     if probe.read() != before:
         yield f"asking for a {kind.lower()} derivative changes values"
 
@@ -231,7 +231,7 @@ def _compared(probe: Probe, known: Declared, kind: str) -> Iterator[str]:
 def _slopes(probe: Probe, known: Declared, value: float, size: float) -> list[float]:
     above, below = probe.at(known, value + size), probe.at(known, value - size)
     probe.put(known, value)
-    return [(one - other) / (2 * size) for one, other in zip(above, below, strict=True)]
+    return [(high - low) / (2 * size) for high, low in zip(above, below, strict=True)]
 
 
 STEPPING_CLAIM_RULES = Rules()
@@ -247,8 +247,8 @@ STEPPING_CLAIM_RULES = Rules()
 def output_derivatives(fmu: Unpacked) -> Iterator[str]:
     """Against the slopes of the outputs, at steps where these are smooth; most must agree."""
     kind = fmu.interface.description.coSimulation
-    found = document(fmu.interface)
-    outputs = [v for v in found.variables.values() if v.model.causality == "output" and v.type in DOUBLES]
+    doc = document(fmu.interface)
+    outputs = [v for v in doc.variables.values() if v.model.causality == "output" and v.type in DOUBLES]
     outputs = [v for v in outputs if v.model.variability in (None, "continuous") and v.is_scalar]
     if not kind or not kind.maxOutputDerivativeOrder or not outputs:
         return
@@ -269,14 +269,14 @@ def output_derivatives(fmu: Unpacked) -> Iterator[str]:
     for k, variable in enumerate(outputs):
         smooth, wrong, example = 0, 0, ""
         for before, now, after, rate in zip(rows, rows[1:], rows[2:], rates[1:], strict=False):
-            one, other = (now[k] - before[k]) / size, (after[k] - now[k]) / size
-            largest = max(abs(one), abs(other))
-            if abs(one - other) > 0.1 * largest:
+            rise, next_rise = (now[k] - before[k]) / size, (after[k] - now[k]) / size
+            largest = max(abs(rise), abs(next_rise))
+            if abs(rise - next_rise) > 0.1 * largest:
                 continue
             smooth += 1
-            if abs(rate[k] - 0.5 * (one + other)) > 0.3 * largest + NOISE * abs(now[k]) / size:
+            if abs(rate[k] - 0.5 * (rise + next_rise)) > 0.3 * largest + NOISE * abs(now[k]) / size:
                 wrong += 1
-                example = example or f"{rate[k]:g}, its slope {0.5 * (one + other):g}"
+                example = example or f"{rate[k]:g}, its slope {0.5 * (rise + next_rise):g}"
         if wrong > 0.5 * smooth:
             yield f"the output derivative of {variable.name} is {example}"
 
@@ -289,10 +289,12 @@ def output_derivatives(fmu: Unpacked) -> Iterator[str]:
 )
 def intermediate_update(fmu: Unpacked) -> Iterator[str]:
     """Of FMI 3.0: the callback is called if there is a variable to exchange, at times of the step."""
-    found = document(fmu.interface)
-    if not found.claims("providesIntermediateUpdate"):
+    doc = document(fmu.interface)
+    if not doc.claims("providesIntermediateUpdate"):
         return
-    exchanged = [v.model.valueReference for v in found.variables.values() if v.given.get("intermediateUpdate") in TRUE]
+    exchanged = [
+        v.model.valueReference for v in doc.variables.values() if v.attributes.get("intermediateUpdate") in TRUE
+    ]
     times: list[float] = []
 
     def update(_environment: Any, time: float, *_: Any) -> None:
@@ -341,7 +343,7 @@ EXCHANGE_CLAIM_RULES = Rules()
 )
 def order(fmu: Unpacked) -> Iterator[str]:
     """States are set to values of their own; they and their derivatives are read by value reference too."""
-    found = document(fmu.interface)
+    doc = document(fmu.interface)
     with integrated(fmu) as host:
         host.start()
         if host.ended or not host.sizes[0]:
@@ -352,12 +354,12 @@ def order(fmu: Unpacked) -> Iterator[str]:
             yield "states are not those that were set"
             return
         for what, keys, there in (
-            ("state", found.states.values(), moved),
-            ("derivative", found.states.keys(), host.rates()),
+            ("state", doc.states.values(), moved),
+            ("derivative", doc.states.keys(), host.rates()),
         ):
-            variables = [found.variables[key] for key in keys]
-            read = [value for v in variables for value in _elements(host.instance, v, found.size(v))]
-            names = [v.name for v in variables for _ in range(found.size(v))]
+            variables = [doc.variables[key] for key in keys]
+            read = [value for v in variables for value in _elements(host.instance, v, doc.size(v))]
+            names = [v.name for v in variables for _ in range(doc.size(v))]
             if len(read) != len(there):
                 yield f"it has {len(there)} {what}s, and ModelStructure lists {len(read)}"
                 return
@@ -381,9 +383,9 @@ def _elements(instance: Any, variable: Declared, size: int) -> list[Any]:
 )
 def indicators(fmu: Unpacked) -> Iterator[str]:
     """Their number; in FMI 2.0 no function tells it, so another one is tried where that is refused."""
-    found = document(fmu.interface)
+    doc = document(fmu.interface)
     if fmu.interface.fmi == 3:
-        listed = sum(found.size(found.variables[unknown.key]) for unknown in found.unknowns("EventIndicators"))
+        listed = sum(doc.size(doc.variables[unknown.key]) for unknown in doc.unknowns("EventIndicators"))
         with integrated(fmu) as host:
             host.start()
             if host.sizes[1] != listed:

@@ -114,7 +114,7 @@ def terminals(interface: Interface) -> Iterator[str]:
         yield from (f"{TERMINALS}, line {entry.line}: {plain(entry.message)}" for entry in schema.error_log)
         return
     for holder in root.iter("Terminals", "Terminal"):
-        for name, count in Counter(each.get("name") for each in holder.iterfind("Terminal")).items():
+        for name, count in Counter(terminal.get("name") for terminal in holder.iterfind("Terminal")).items():
             if count > 1:
                 yield f"{count} terminals are called {name}"
     for terminal in root.iter("Terminal"):
@@ -153,8 +153,8 @@ class Layered(NamedTuple):
 
 
 def _xcp(layered: Layered) -> Iterator[str]:
-    for given in layered.root.iterfind("Interface"):
-        file = f"{layered.folder}/{given.get('definition')}"
+    for interface in layered.root.iterfind("Interface"):
+        file = f"{layered.folder}/{interface.get('definition')}"
         if file not in _names(layered.interface.path):
             yield f"{file} is named, and is not there"
             continue
@@ -166,7 +166,7 @@ def _xcp(layered: Layered) -> Iterator[str]:
 def _bus(layered: Layered) -> Iterator[str]:
     root = None if TERMINALS not in _names(layered.interface.path) else _parsed(layered.interface, TERMINALS)
     kinds = (
-        set() if root is None or isinstance(root, str) else {each.get("terminalKind") for each in root.iter("Terminal")}
+        set() if root is None or isinstance(root, str) else {part.get("terminalKind") for part in root.iter("Terminal")}
     )
     if "org.fmi-ls-bus.network-terminal" not in kinds and layered.root.get("isBusSimulationFMU") not in ("true", "1"):
         yield "it is of FMI-LS-BUS, but has no network terminal"

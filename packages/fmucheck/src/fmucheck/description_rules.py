@@ -54,6 +54,7 @@ def standard(interface: Interface) -> list[str]:
     return []
 
 
+# fmpy takes 1.4 ms a name to parse this
 _QUOTED = r"""'(?:[\w!#$%&()*+,\-./:;<>=?@\[\]^{}|~ ]|\\['"?\\abfnrtv])+'"""
 _PART = rf"(?:[A-Za-z_][A-Za-z0-9_]*|{_QUOTED})(?:\[\d+(?:,\d+)*\])?"
 _PATH = rf"{_PART}(?:\.{_PART})*"
@@ -91,45 +92,46 @@ def variable_names(interface: Interface) -> Iterator[str]:
 def structure(interface: Interface) -> Iterator[str]:
     """What is missing in it, there twice, of another kind, or out of order. In co-simulation alone Derivatives count in
     FMI 2.0 only with directional derivatives."""
-    found = document(interface)
-    listed = {section: found.unknowns(section) for section in SECTIONS[interface.fmi]}
+    doc = document(interface)
+    listed = {section: doc.unknowns(section) for section in SECTIONS[interface.fmi]}
     for section, unknowns in listed.items():
         for key in _twice(unknown.key for unknown in unknowns):
-            yield f"{section} has {found.variables[str(key)].name} twice"
+            yield f"{section} has {doc.variables[str(key)].name} twice"
         for unknown in unknowns:
             if unknown.kinds and len(unknown.kinds) != len(unknown.dependencies or []):
-                name = found.variables[unknown.key].name
+                name = doc.variables[unknown.key].name
                 yield f"the number of dependencies and of dependenciesKind of {name} in {section} do not match"
     yield from _differing(
-        found.variables, "Outputs", listed, {k for k, v in found.variables.items() if v.model.causality == "output"}
+        doc.variables, "Outputs", listed, {k for k, v in doc.variables.items() if v.model.causality == "output"}
     )
     for unknown in listed["Derivatives"]:
-        if "derivative" not in found.variables[unknown.key].given:
-            yield f"{found.variables[unknown.key].name} in Derivatives must have the attribute derivative"
-    initial = {key for key, v in found.variables.items() if _is_initial_unknown(v)}
-    of_states = {*found.states, *found.states.values()} & found.variables.keys()
-    unknown = {key for key in of_states if found.variables[key].model.initial in ("approx", "calculated")} - initial
+        if "derivative" not in doc.variables[unknown.key].attributes:
+            yield f"{doc.variables[unknown.key].name} in Derivatives must have the attribute derivative"
+    initial = {key for key, v in doc.variables.items() if _is_initial_unknown(v)}
+    of_states = {*doc.states, *doc.states.values()} & doc.variables.keys()
+    unknown = {key for key in of_states if doc.variables[key].model.initial in ("approx", "calculated")} - initial
     if interface.fmi == 2 and not (
-        interface.description.modelExchange or found.claims("providesDirectionalDerivatives", "CoSimulation")
+        interface.description.modelExchange or doc.claims("providesDirectionalDerivatives", "CoSimulation")
     ):
-        unknown &= {each.key for each in listed["InitialUnknowns"]}
-    yield from _differing(found.variables, "InitialUnknowns", listed, initial | unknown)
+        unknown &= {initial_unknown.key for initial_unknown in listed["InitialUnknowns"]}
+    yield from _differing(doc.variables, "InitialUnknowns", listed, initial | unknown)
     numbers = [int(unknown.key) for unknown in listed["InitialUnknowns"] if interface.fmi == 2]
     for before, after in pairwise(numbers):
         if before > after:
-            names = found.variables[str(after)].name, found.variables[str(before)].name
+            names = doc.variables[str(after)].name, doc.variables[str(before)].name
             yield f"{names[0]} stands behind {names[1]} in InitialUnknowns, and before it among the variables"
             break
     if interface.fmi == 3:
-        clocked = {key for key, v in found.variables.items() if "previous" in v.given}
-        yield from _differing(found.variables, "ClockedStates", listed, clocked)
+        clocked = {key for key, v in doc.variables.items() if "previous" in v.attributes}
+        yield from _differing(doc.variables, "ClockedStates", listed, clocked)
 
 
 def _is_initial_unknown(variable: Declared) -> bool:
     """Of FMI 2.0 and 3.0; clocks and what is clocked have no value in initialization mode."""
     if variable.model.causality == "calculatedParameter":
         return True
-    timed = variable.type == "Clock" or "clocks" in variable.given
+    # fmpy asks for clocks among the InitialUnknowns
+    timed = variable.type == "Clock" or "clocks" in variable.attributes
     return variable.model.causality == "output" and variable.model.initial in ("approx", "calculated") and not timed
 
 
@@ -151,8 +153,8 @@ def initial(interface: Interface) -> Iterator[str]:
     """What is set from outside is not initialized; FMI 3.0 forbids it for the independent variable alone."""
     without = ("input", "independent") if interface.fmi == 2 else ("independent",)
     for variable in document(interface).variables.values():
-        if "initial" in variable.given and variable.model.causality in without:
-            yield f'{variable.name} is {variable.model.causality} and has initial="{variable.given["initial"]}"'
+        if "initial" in variable.attributes and variable.model.causality in without:
+            yield f'{variable.name} is {variable.model.causality} and has initial="{variable.attributes["initial"]}"'
 
 
 @DESCRIPTION_RULES.rule(
@@ -176,9 +178,9 @@ def bounds(interface: Interface) -> Iterator[str]:
 def nominal(interface: Interface) -> Iterator[str]:
     """What a solver divides by."""
     for variable in document(interface).variables.values():
-        given = variable.given.get("nominal")
-        if given is not None and not float(given) > 0.0:
-            yield f"the nominal value of {variable.name} is {given}"
+        nominal_value = variable.attributes.get("nominal")
+        if nominal_value is not None and not float(nominal_value) > 0.0:
+            yield f"the nominal value of {variable.name} is {nominal_value}"
 
 
 @DESCRIPTION_RULES.rule(
@@ -190,18 +192,19 @@ def nominal(interface: Interface) -> Iterator[str]:
 )
 def enumerations(interface: Interface) -> Iterator[str]:
     """Types whose items are alike, and starts that are no item."""
-    found = document(interface)
-    items = {name: declared.findall("Item") for name, declared in found.types.items()}
+    doc = document(interface)
+    items = {name: declared.findall("Item") for name, declared in doc.types.items()}
     for name, listed in items.items():
         for what in ("name", "value"):
             for twice in _twice(item.get(what) for item in listed):
                 yield f"two items of {name} have the {what} {twice}"
-    for variable in found.variables.values():
-        values = {item.get("value") for item in items.get(variable.given.get("declaredType"), [])}
+    for variable in doc.variables.values():
+        values = {item.get("value") for item in items.get(variable.attributes.get("declaredType"), [])}
         if variable.type == "Enumeration" and values:
-            for start in found.starts(variable):
+            for start in doc.starts(variable):
                 if start not in values:
-                    yield f"{variable.name} starts at {start}, which is no item of {variable.given['declaredType']}"
+                    kind = variable.attributes["declaredType"]
+                    yield f"{variable.name} starts at {start}, which is no item of {kind}"
 
 
 @DESCRIPTION_RULES.rule(
@@ -237,17 +240,17 @@ def aliases(interface: Interface) -> Iterator[str]:
 )
 def reinit(interface: Interface) -> Iterator[str]:
     """In FMI 2.0 it must not be present where there is no model exchange."""
-    found = document(interface)
-    given = [v for v in found.variables.values() if "reinit" in v.given]
-    if given and interface.fmi == 2 and interface.description.modelExchange is None:
-        yield f"{len(given)} variables have reinit, but the FMU is for co-simulation alone"
+    doc = document(interface)
+    variables = [v for v in doc.variables.values() if "reinit" in v.attributes]
+    if variables and interface.fmi == 2 and interface.description.modelExchange is None:
+        yield f"{len(variables)} variables have reinit, but the FMU is for co-simulation alone"
         return
     states = {
-        *found.states.values(),
-        *(v.given["derivative"] for v in found.variables.values() if "derivative" in v.given),
+        *doc.states.values(),
+        *(v.attributes["derivative"] for v in doc.variables.values() if "derivative" in v.attributes),
     }
-    for variable in given:
-        if variable.key not in states and variable.given["reinit"] in TRUE:
+    for variable in variables:
+        if variable.key not in states and variable.attributes["reinit"] in TRUE:
             yield f"{variable.name} has reinit, and is no continuous state"
 
 
@@ -270,7 +273,7 @@ def names(interface: Interface) -> Iterator[str]:
     """Names that are there twice; fmpy sees to those of variables."""
     root = document(interface).root
     for what, where in LISTS.items():
-        for name, count in Counter(given.get("name") for given in root.iterfind(where)).items():
+        for name, count in Counter(element.get("name") for element in root.iterfind(where)).items():
             if count > 1:
                 yield f"{count} {what} are called {name}"
 
@@ -309,11 +312,11 @@ NEEDED = {
 )
 def capabilities(interface: Interface) -> Iterator[str]:
     """Claims that cannot be."""
-    found = document(interface)
-    for kind in found.root:
+    doc = document(interface)
+    for kind in doc.root:
         for claim, needs in NEEDED.items():
-            if found.claims(claim, kind.tag) and not found.claims(needs, kind.tag):
-                yield f"{kind.tag} has {found.called(claim)}, but not {found.called(needs)}"
+            if doc.claims(claim, kind.tag) and not doc.claims(needs, kind.tag):
+                yield f"{kind.tag} has {doc.called(claim)}, but not {doc.called(needs)}"
 
 
 @DESCRIPTION_RULES.rule(
@@ -324,29 +327,29 @@ def capabilities(interface: Interface) -> Iterator[str]:
 )
 def clocks(interface: Interface) -> Iterator[str]:
     """Of FMI 3.0: intervals, priorities, event mode, and the attributes clocks and previous."""
-    found = document(interface)
-    of_type = {key: v for key, v in found.variables.items() if v.type == "Clock"}
+    doc = document(interface)
+    of_type = {key: v for key, v in doc.variables.items() if v.type == "Clock"}
     stepping, scheduled = interface.description.coSimulation, interface.description.scheduledExecution
     if of_type and stepping and not stepping.hasEventMode:
         yield "it has clocks, but no event mode (hasEventMode)"
     for clock in of_type.values():
-        given = clock.given
-        if given.get("intervalVariability") == "constant" and "intervalDecimal" not in given:
+        attributes = clock.attributes
+        if attributes.get("intervalVariability") == "constant" and "intervalDecimal" not in attributes:
             yield f"{clock.name} is a constant clock without intervalDecimal"
-        if "intervalDecimal" in given and not float(given["intervalDecimal"]) > 0.0:
-            yield f"the interval of {clock.name} is {given['intervalDecimal']}, which is not above 0"
-        if "intervalCounter" in given and "resolution" not in given:
+        if "intervalDecimal" in attributes and not float(attributes["intervalDecimal"]) > 0.0:
+            yield f"the interval of {clock.name} is {attributes['intervalDecimal']}, which is not above 0"
+        if "intervalCounter" in attributes and "resolution" not in attributes:
             yield f"{clock.name} has intervalCounter without resolution"
-        if scheduled and clock.model.causality == "input" and "priority" not in given:
+        if scheduled and clock.model.causality == "input" and "priority" not in attributes:
             yield f"{clock.name} has no priority, which scheduled execution needs"
-    for variable in found.variables.values():
-        for named in variable.given.get("clocks", "").split():
+    for variable in doc.variables.values():
+        for named in variable.attributes.get("clocks", "").split():
             if named not in of_type:
                 yield f"clocks of {variable.name} names {named}, which is no clock"
-        if "clocks" in variable.given and variable.model.variability not in ("discrete", "tunable"):
+        if "clocks" in variable.attributes and variable.model.variability not in ("discrete", "tunable"):
             yield f"{variable.name} has clocks, and is {variable.model.variability}"
-        if "previous" in variable.given and variable.given["previous"] not in found.variables:
-            yield f"previous of {variable.name} is {variable.given['previous']}, which no variable has"
+        if "previous" in variable.attributes and variable.attributes["previous"] not in doc.variables:
+            yield f"previous of {variable.name} is {variable.attributes['previous']}, which no variable has"
 
 
 @DESCRIPTION_RULES.rule(
@@ -357,27 +360,27 @@ def clocks(interface: Interface) -> Iterator[str]:
 )
 def dimensions(interface: Interface) -> Iterator[str]:
     """Of FMI 3.0."""
-    found = document(interface)
-    for variable in found.variables.values():
+    doc = document(interface)
+    for variable in doc.variables.values():
         sized = variable.element.findall("Dimension")
         if any((size.get("start") is None) == (size.get("valueReference") is None) for size in sized):
             yield f"a dimension of {variable.name} must have either start or valueReference"
             continue
         for size in sized:
-            named = found.variables.get(size.get("valueReference", ""))
+            named = doc.variables.get(size.get("valueReference", ""))
             if named and (named.model.causality != "structuralParameter" or named.type != "UInt64"):
                 yield f"a dimension of {variable.name} is {named.name}, which is no structural parameter of type UInt64"
-        starts = found.starts(variable)
-        if sized and len(starts) not in (0, found.size(variable)):
-            yield f"{variable.name} has {len(starts)} start values for {found.size(variable)} elements"
+        starts = doc.starts(variable)
+        if sized and len(starts) not in (0, doc.size(variable)):
+            yield f"{variable.name} has {len(starts)} start values for {doc.size(variable)} elements"
 
 
 @DESCRIPTION_RULES.rule("date", Severity.WARNING, "the date is as YYYY-MM-DDThh:mm:ssZ", Clause("2.2.1", "2.4.1"))
 def date(interface: Interface) -> Iterator[str]:
     """When it was made."""
-    given = interface.description.generationDateAndTime
-    if given and not DATE.fullmatch(given):
-        yield f"generationDateAndTime is {given}"
+    written = interface.description.generationDateAndTime
+    if written and not DATE.fullmatch(written):
+        yield f"generationDateAndTime is {written}"
 
 
 @DESCRIPTION_RULES.rule(
@@ -425,6 +428,7 @@ def execution_tool(interface: Interface) -> Iterator[str]:
         yield "needsExecutionTool is true: some tools refuse such FMUs"
 
 
+# the standard does not ask for units
 @DESCRIPTION_RULES.rule("units", Severity.NOTE, "variables have units", Clause("2.2.2", "2.4.3"))
 def units(interface: Interface) -> Iterator[str]:
     """Public variables without unit."""

@@ -45,14 +45,14 @@ class Declared(NamedTuple):
     Attributes:
         key: by which ModelStructure refers to it.
         type: as the standard calls it, of an element.
-        given: attributes, in FMI 2.0 those of its type too.
+        attributes: of its element, in FMI 2.0 those of its type too.
         model: what fmpy made of it, with what is true by default.
     """
 
     key: str
     name: str
     type: str
-    given: Mapping[str, str]
+    attributes: Mapping[str, str]
     element: Element
     model: ModelVariable
 
@@ -85,9 +85,9 @@ class Document:
         for position, element in enumerate(listed, start=1):
             kind = element if self.fmi == 3 else next(child for child in element if child.tag in TYPES_OF_FMI2)
             key = element.get("valueReference", "") if self.fmi == 3 else str(position)
-            given = element.attrib | kind.attrib
-            name = given["name"]
-            self.variables[key] = Declared(key, name, kind.tag, given, element, interface.variables[name])
+            attributes = element.attrib | kind.attrib
+            name = attributes["name"]
+            self.variables[key] = Declared(key, name, kind.tag, attributes, element, interface.variables[name])
 
     @cached_property
     def types(self) -> dict[str | None, Element]:
@@ -115,12 +115,12 @@ class Document:
     def states(self) -> dict[str, str]:
         """Keys of the states by those of their derivatives, in the order in which the FMU has them."""
         rates = [self.variables[unknown.key] for unknown in self.unknowns("Derivatives")]
-        return {rate.key: rate.given["derivative"] for rate in rates if "derivative" in rate.given}
+        return {rate.key: rate.attributes["derivative"] for rate in rates if "derivative" in rate.attributes}
 
     def sizes(self, variable: Declared) -> list[int]:
         """The sizes of its dimensions at the start; of a scalar none."""
         return [
-            int(size.get("start") or self.variables[size.get("valueReference", "")].given["start"])
+            int(size.get("start") or self.variables[size.get("valueReference", "")].attributes["start"])
             for size in variable.element.iterfind("Dimension")
         ]
 
@@ -131,11 +131,11 @@ class Document:
     def starts(self, variable: Declared) -> list[str]:
         """Its start values, one for each element."""
         if self.fmi == 3 and variable.type in ("String", "Binary"):
-            found = [start.get("value", "") for start in variable.element.iterfind("Start")]
+            starts = [start.get("value", "") for start in variable.element.iterfind("Start")]
         else:
-            given = variable.given.get("start")
-            found = [] if given is None else given.split() if self.fmi == 3 else [given]
-        return found * self.size(variable) if len(found) == 1 else found
+            written = variable.attributes.get("start")
+            starts = [] if written is None else written.split() if self.fmi == 3 else [written]
+        return starts * self.size(variable) if len(starts) == 1 else starts
 
 
 def _unknown(element: Element, key: str) -> Unknown:

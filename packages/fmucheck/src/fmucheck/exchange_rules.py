@@ -22,12 +22,12 @@ Point = tuple[float, list[float], list[float]]
 
 
 def _run(host: ExchangeHost, share: float, points: int) -> list[Point]:
-    found: list[Point] = []
+    track: list[Point] = []
     begin = host.time
     for k in range(1, points + 1):
         host.advance(begin + share * host.duration * k / points)
-        found.append((host.time, host.states(), host.rates()))
-    return found
+        track.append((host.time, host.states(), host.rates()))
+    return track
 
 
 def _names(host: ExchangeHost) -> list[str]:

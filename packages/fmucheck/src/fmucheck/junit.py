@@ -6,7 +6,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from .rule import Verdict
 
 
-def junit(found: Mapping[str, Iterable[Verdict]], failing: Iterable[str]) -> str:
+def junit(verdicts_of: Mapping[str, Iterable[Verdict]], failing: Iterable[str]) -> str:
     """A test suite for each FMU and a test case for each rule.
 
     Args:
@@ -15,7 +15,7 @@ def junit(found: Mapping[str, Iterable[Verdict]], failing: Iterable[str]) -> str
     """
     failing = set(failing)
     root = Element("testsuites", name="driveline check")
-    for name, verdicts in found.items():
+    for name, verdicts in verdicts_of.items():
         suite = SubElement(root, "testsuite", name=name)
         tests = [_test_case(suite, name, verdict, verdict.severity in failing) for verdict in verdicts]
         suite.set("tests", str(len(tests)))

@@ -58,12 +58,12 @@ class Probe(NamedTuple):
 
 def values(instance: Instance, variables: Sequence[Declared]) -> list[Any]:
     """Those of scalars, of any types."""
-    found: dict[str, Any] = {}
+    value_of: dict[str, Any] = {}
     for kind in dict.fromkeys(accessor(instance.interface.fmi, v.type) for v in variables):
         alike = [v for v in variables if accessor(instance.interface.fmi, v.type) == kind]
         got = instance.call(f"get{kind}", [v.model.valueReference for v in alike])
-        found.update(zip((v.key for v in alike), got, strict=True))
-    return [found[v.key] for v in variables]
+        value_of.update(zip((v.key for v in alike), got, strict=True))
+    return [value_of[v.key] for v in variables]
 
 
 def put(instance: Instance, variable: Declared, value: Any) -> None:
@@ -82,30 +82,30 @@ def step(variable: Declared, value: float, share: float) -> float:
     return size if value + 2 * size <= highest else -size
 
 
-def _scalars(found: Document, keys: Sequence[str]) -> list[Declared]:
-    chosen = [found.variables[key] for key in keys]
-    return [v for v in chosen if v.type in MOVED and v.is_scalar and "clocks" not in v.given]
+def _scalars(doc: Document, keys: Sequence[str]) -> list[Declared]:
+    chosen = [doc.variables[key] for key in keys]
+    return [v for v in chosen if v.type in MOVED and v.is_scalar and "clocks" not in v.attributes]
 
 
-def _listed(found: Document, sections: Sequence[str]) -> list[tuple[Declared, Unknown]]:
+def _listed(doc: Document, sections: Sequence[str]) -> list[tuple[Declared, Unknown]]:
     """The unknowns of these sections; those that are a state say nothing of what follows from states."""
-    unknowns = {u.key: u for section in sections for u in found.unknowns(section)}
-    states = set(found.states.values())
-    return [(v, unknowns[v.key]) for v in _scalars(found, list(unknowns)) if v.key not in states][:MOST_UNKNOWNS]
+    unknowns = {u.key: u for section in sections for u in doc.unknowns(section)}
+    states = set(doc.states.values())
+    return [(v, unknowns[v.key]) for v in _scalars(doc, list(unknowns)) if v.key not in states][:MOST_UNKNOWNS]
 
 
-def _inputs(found: Document, rates: Collection[int]) -> list[Declared]:
+def _inputs(doc: Document, rates: Collection[int]) -> list[Declared]:
     """Without those that are rates of change of others."""
-    inputs = [key for key, v in found.variables.items() if v.model.causality == "input"]
-    return [v for v in _scalars(found, inputs) if v.model.valueReference not in rates]
+    inputs = [key for key, v in doc.variables.items() if v.model.causality == "input"]
+    return [v for v in _scalars(doc, inputs) if v.model.valueReference not in rates]
 
 
 @contextmanager
 def _exchanging(fmu: Unpacked) -> Iterator[Probe]:
     """In continuous-time mode: derivatives and outputs of states and inputs."""
-    found = document(fmu.interface)
-    states = _scalars(found, list(found.states.values()))
-    if len(states) < len(found.states):
+    doc = document(fmu.interface)
+    states = _scalars(doc, list(doc.states.values()))
+    if len(states) < len(doc.states):
         states = []
     with integrated(fmu) as host:
         host.start()
@@ -121,35 +121,35 @@ def _exchanging(fmu: Unpacked) -> Iterator[Probe]:
 
         inputs = [
             v
-            for v in _inputs(found, fmu.interface.rates.values())
+            for v in _inputs(doc, fmu.interface.rates.values())
             if v.type in REALS and v.model.variability == "continuous"
         ]
         knowns = [] if host.ended else [*states, *inputs]
-        yield Probe(host.instance, knowns, _listed(found, ["Derivatives", "Outputs"]), move)
+        yield Probe(host.instance, knowns, _listed(doc, ["Derivatives", "Outputs"]), move)
 
 
 @contextmanager
 def _stepping(fmu: Unpacked) -> Iterator[Probe]:
     """At a communication point: outputs of inputs."""
-    found = document(fmu.interface)
+    doc = document(fmu.interface)
     with hosted(fmu) as host:
         host.start()
         host.run(STEPS)
-        knowns = [] if host.ended else _inputs(found, fmu.interface.rates.values())
-        unknowns = _listed(found, ["Outputs"])
+        knowns = [] if host.ended else _inputs(doc, fmu.interface.rates.values())
+        unknowns = _listed(doc, ["Outputs"])
         yield Probe(host.instance, knowns, unknowns, lambda known, v: put(host.instance, known, v), at_once=False)
 
 
 @contextmanager
 def initializing(fmu: Unpacked) -> Iterator[Probe]:
     """In initialization mode: initial unknowns of what has a start value."""
-    found = document(fmu.interface)
+    doc = document(fmu.interface)
     exact = [
-        key for key, v in found.variables.items() if v.model.initial == "exact" and v.model.variability != "constant"
+        key for key, v in doc.variables.items() if v.model.initial == "exact" and v.model.variability != "constant"
     ]
     with initialized(fmu) as instance:
-        knowns = [v for v in _scalars(found, exact) if v.model.causality != "structuralParameter"]
-        yield Probe(instance, knowns, _listed(found, ["InitialUnknowns"]), lambda known, v: put(instance, known, v))
+        knowns = [v for v in _scalars(doc, exact) if v.model.causality != "structuralParameter"]
+        yield Probe(instance, knowns, _listed(doc, ["InitialUnknowns"]), lambda known, v: put(instance, known, v))
 
 
 @contextmanager
@@ -177,10 +177,10 @@ Mode = Callable[[Unpacked], AbstractContextManager[Probe]]
 
 def modes(fmu: Unpacked) -> list[Mode]:
     """Those after initialization that the FMU has."""
-    described = fmu.interface.description
-    kind = described.coSimulation
-    stepped = kind and (kind.hasEventMode or not has_clocks(described))
-    return [*([_exchanging] if described.modelExchange else []), *([_stepping] if stepped else [])]
+    doc = fmu.interface.description
+    kind = doc.coSimulation
+    stepped = kind and (kind.hasEventMode or not has_clocks(doc))
+    return [*([_exchanging] if doc.modelExchange else []), *([_stepping] if stepped else [])]
 
 
 def each_known(fmu: Unpacked, mode: Mode, use: Callable[[Probe, Declared], Iterator[str]]) -> Iterator[str]:

@@ -80,14 +80,14 @@ class Rule:
         Raises:
             InstantiationError: so that nothing can be said of a rule.
         """
-        found: list[str] = []
+        problems: list[str] = []
         try:
-            found.extend(map(plain, self.problems(*subject)))
+            problems.extend(map(plain, self.problems(*subject)))
         except InstantiationError:
             raise
         except UserError as error:
-            found.append(plain(error))
-        return self.verdict(found)
+            problems.append(plain(error))
+        return self.verdict(problems)
 
     def verdict(self, problems: list[str], tried: bool = True) -> Verdict:
         return Verdict(self.name, self.severity.value, self.title, problems, tried, str(self.clause))

@@ -31,7 +31,7 @@ def require_each(name: str, values: Iterable[Any], kind: Any, allowed: str) -> l
     """
     if isinstance(values, str | PathLike | kind) or not isinstance(values, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise WiringError(f"{name} = {plain(repr(values), 60)}: it must be a list of {allowed}")
-    found = list(values)
-    for value in found:
+    listed = list(values)
+    for value in listed:
         require_kind(f"one of {name}", value, kind, f"one of the {allowed}")
-    return found
+    return listed

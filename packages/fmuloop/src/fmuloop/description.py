@@ -72,19 +72,19 @@ def _parsed(text: bytes, path: Path, kinds: Sequence[str]) -> ModelDescription:
         others = [called for kind, called in KINDS.items() if root.find(kind) is not None]
         taken = " or ".join(KINDS[kind] for kind in kinds)
         raise WiringError(f"{path} is for {' and '.join(others) or 'nothing'} alone; it must be for {taken}")
-    found = list(_problems(root, offered))
-    if found:
-        more = f" (and {len(found) - 1} more)" if found[1:] else ""
-        raise WiringError(f"the model description of {path} cannot be used: {found[0]}{more}")
+    problems = list(_problems(root, offered))
+    if problems:
+        more = f" (and {len(problems) - 1} more)" if problems[1:] else ""
+        raise WiringError(f"the model description of {path} cannot be used: {problems[0]}{more}")
     try:
-        made = fmpy.read_model_description(str(path), validate=False)
+        model = fmpy.read_model_description(str(path), validate=False)
     except Exception as error:  # fmpy raises bare exceptions
         reason = plain(error if type(error) is Exception else f"{type(error).__name__} {error}")
         raise WiringError(f"the model description of {path} cannot be read: {reason}") from error
-    for variable in made.modelVariables if version != "2.0" else ():
+    for variable in model.modelVariables if version != "2.0" else ():
         of_array = "array of " if variable.shape else ""
         cast(Any, variable).type = of_array + OURS.get(str(variable.type), str(variable.type))
-    return made
+    return model
 
 
 def document_root(path: Path, limits: Limits) -> Element:

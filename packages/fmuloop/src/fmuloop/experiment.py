@@ -99,6 +99,7 @@ def instants(duration: float, step_size: float) -> NDArray[np.float64]:
         WiringError, MemoryError: as of `require_steps`.
     """
     require_steps(duration, step_size)
+    # never added up: FMUs refused sums of floats as an "Invalid currentCommunicationPoint"
     return np.arange(floor(duration / step_size + 1e-6) + 1, dtype=np.float64) * step_size
 
 

@@ -42,22 +42,22 @@ class Feedthrough:
         Raises:
             WiringError: declared dependencies form an algebraic loop.
         """
-        left = [name for name in self.inputs if name not in known]
-        while left:
-            ready = [name for name in left if self.sources[name] <= known]
-            ready = ready or [name for name in left if name in self.undeclared]
+        undetermined = [name for name in self.inputs if name not in known]
+        while undetermined:
+            ready = [name for name in undetermined if self.sources[name] <= known]
+            ready = ready or [name for name in undetermined if name in self.undeclared]
             if not ready:
-                raise WiringError(self._loop(left))
+                raise WiringError(self._loop(undetermined))
             together = [name for name in ready if _instance(name) == _instance(ready[0])]
             yield together
             known = known.union(together)
-            left = [name for name in left if name not in known]
+            undetermined = [name for name in undetermined if name not in known]
 
-    def _loop(self, left: list[str]) -> str:
+    def _loop(self, undetermined: list[str]) -> str:
         """What to say of an algebraic loop; each of the outputs left follows from another of them."""
-        path = [left[0]]
+        path = [undetermined[0]]
         while path.count(path[-1]) == 1:
-            path.append(min(self.sources[path[-1]].intersection(left)))
+            path.append(min(self.sources[path[-1]].intersection(undetermined)))
         loop = path[path.index(path[-1]) :]
         return (
             f"algebraic loop: {' follows from '.join(loop)} within the same instant; "
@@ -69,10 +69,10 @@ def declared(interface: Interface) -> dict[str, frozenset[str] | None]:
     """Output -> inputs that it follows from within the same instant, or None if that is not declared."""
     inputs = {_identity(v): v.name for v in interface.of_causality("input")}
     unknowns = {_identity(u.variable): u.dependencies for u in interface.description.outputs if u.variable}
-    found = {v.name: unknowns.get(_identity(v)) for v in interface.of_causality("output")}
+    knowns_of = {v.name: unknowns.get(_identity(v)) for v in interface.of_causality("output")}
     return {
         name: None if knowns is None else frozenset(inputs[_identity(v)] for v in knowns if _identity(v) in inputs)
-        for name, knowns in found.items()
+        for name, knowns in knowns_of.items()
     }
 
 

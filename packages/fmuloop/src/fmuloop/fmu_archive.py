@@ -95,10 +95,10 @@ def described(path: Path, limits: Limits = USUAL_LIMITS) -> bytes:
     Raises:
         WiringError: the archive is none, has none, or is not to be unpacked.
     """
-    found = entries(path)
-    for problem in problems(found, limits):
+    contents = entries(path)
+    for problem in problems(contents, limits):
         raise WiringError(f"{path} is not unpacked: {problem.text}")
-    if not any(entry.filename == DESCRIPTION for entry in found):
+    if not any(entry.filename == DESCRIPTION for entry in contents):
         raise WiringError(f"{path} is not an FMU: there is no {DESCRIPTION} in it")
     try:
         with ZipFile(path) as archive:

@@ -119,6 +119,7 @@ class _Traced:
     def _loadFunctions(self) -> None:
         functions = [name for name in dir(type(self)) if re.fullmatch("fmi[23][A-Z].*", name)]
         self.missing = [name for name in functions if not hasattr(self.dll, name)]
+        # fmpy binds all at once, and binaries do without functions that nobody calls
         for name in self.missing:
             setattr(self.dll, name, _Absent(name))
         cast(Any, super())._loadFunctions()
@@ -126,6 +127,7 @@ class _Traced:
     def _call(self, fname: str, *args: Any) -> Any:
         note(self.number, fname, args[1] if fname in ("fmi2DoStep", "fmi3DoStep") else AT_START)
         result = cast(Any, super())._call(fname, *args)
+        # fmpy takes -1 for no refusal
         if cast(Any, self)._functions[fname].restype == c_int and result < fmi2OK:
             raise FMICallException(function=fname, status=result)
         return result

@@ -73,8 +73,8 @@ class Interface:
         self.path = path
         self.limits = limits
         self.description = description.read(path, limits, kinds)
-        found = self.description
-        offered = found.coSimulation or found.modelExchange or found.scheduledExecution
+        model = self.description
+        offered = model.coSimulation or model.modelExchange or model.scheduledExecution
         assert offered is not None
         self.identifier = str(offered.modelIdentifier)
         self.fmi = self.description.fmiMajorVersion
@@ -101,7 +101,7 @@ class Interface:
     def by_access(self, variables: Sequence[ModelVariable]) -> dict[Access, list[ModelVariable]]:
         """Those that are set or got by the same function; others are left out."""
         alike = {access: [v for v in variables if self.access(v) == access] for access in ACCESSES[self.fmi].values()}
-        return {access: found for access, found in alike.items() if found}
+        return {access: alike_there for access, alike_there in alike.items() if alike_there}
 
 
 def _rates(description: ModelDescription) -> dict[int, int]:

@@ -65,6 +65,7 @@ class IsolatedProcess:
         except SimulationError as error:
             called = FUNCTIONS[self._at()[1] - 1]
             fails = isinstance(error, InstantiationError) or (not self.alive and "Instantiate" in called)
+            # PythonFMU decodes no more than %20 of the path of its resources
             if str(self.folder).isascii() or not fails:
                 raise
             where = f"{self.folder.parent}, whose name is not plain ASCII, which some FMUs cannot take; see TMPDIR"

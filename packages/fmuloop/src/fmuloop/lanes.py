@@ -222,7 +222,7 @@ class _Binding:
         size = row.strides[0]
         self._places = {name: row.ctypes.data + size * k for k, name in enumerate(self._columns)}
         self._rates = {rate: row.ctypes.data + size * (len(self._columns) + k) for k, rate in enumerate(read)}
-        bound = [[action for each in part for action in self._bound(each)] for part in (begin, end)]
+        bound = [[call for action in part for call in self._bound(action)] for part in (begin, end)]
         actions = [*bound[0], *bound[1]]
         columns = [_Column(offset, kind.kind == "i") for kind, offset in self._fields.values()]
         return _Plan(
@@ -258,25 +258,25 @@ class _Binding:
                     yield _line([end, *rates], [block.place(variable), block.rate(variable)])
 
 
-def _are_alike(one: Experiment, other: Experiment) -> bool:
+def _are_alike(first: Experiment, second: Experiment) -> bool:
     """Whether what is known in advance is the same."""
-    return one.inputs is other.inputs and (one.duration, one.step_size) == (other.duration, other.step_size)
+    return first.inputs is second.inputs and (first.duration, first.step_size) == (second.duration, second.step_size)
 
 
 def _action(block: Block, function: str | None, pairs: Sequence[tuple[int, int]] = ()) -> _Action:
-    made = _Action(block=block.address, count=len(pairs))
-    made.call = cast(getattr(block.library, function), c_void_p) if function else None
-    made.kept = [(c_void_p * len(pairs))(*places) for places in zip(*pairs, strict=True)]
+    action = _Action(block=block.address, count=len(pairs))
+    action.call = cast(getattr(block.library, function), c_void_p) if function else None
+    action.kept = [(c_void_p * len(pairs))(*places) for places in zip(*pairs, strict=True)]
     if pairs:
-        made.from_, made.to = (cast(array, c_void_p) for array in made.kept)
-    return made
+        action.from_, action.to = (cast(array, c_void_p) for array in action.kept)
+    return action
 
 
 def _line(from_: Sequence[int | None], to: Sequence[int]) -> _Action:
-    made = _Action(is_line=1)
-    made.kept = [(c_void_p * len(places))(*places) for places in (from_, to)]
-    made.from_, made.to = (cast(array, c_void_p) for array in made.kept)
-    return made
+    action = _Action(is_line=1)
+    action.kept = [(c_void_p * len(places))(*places) for places in (from_, to)]
+    action.from_, action.to = (cast(array, c_void_p) for array in action.kept)
+    return action
 
 
 def _aligned(shape: tuple[int, int]) -> np.ndarray:

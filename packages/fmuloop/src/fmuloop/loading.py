@@ -67,6 +67,7 @@ class IsolatedLoop:
         try:
             remarks = self._isolated.ask(_finish)
         except SimulationError as error:
+            # FMUs crash in fmi2FreeInstance, or refuse fmi2Terminate, when all rows are there
             remarks = [f"{error}; {KEPT}"]
         for text in remarks:
             LOG.warning(text)
@@ -98,6 +99,7 @@ def loaded(
         warn_once(reason)
     warn_of_absent(fitted)
     LOG.info("under the propagated scheme, %s", described(transfers(fitted.system, fitted.interfaces)))
+    # an FMU that exits, crashes or hangs would take the caller with it
     load = _here if system.instances.keys() <= system.own else _isolated
     with load(fitted, folder, make_steps) as loop:
         yield loop

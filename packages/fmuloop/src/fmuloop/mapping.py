@@ -34,16 +34,16 @@ def parsed(texts: Iterable[str]) -> dict[str, str]:
     for text in texts:
         name, equals, theirs = (part.strip() for part in text.partition("="))
         if not equals and (name.endswith(".toml") or Path(name).is_file()):
-            found = read(Path(name))
+            names = read(Path(name))
         elif theirs and all(name.partition(".")):
-            found = {name: theirs}
+            names = {name: theirs}
         else:
             no_file = "" if equals else f", and there is no file {name}"
             raise WiringError(f"{text!r} is not of the form plant.T_gear=Shaft.tau{no_file}")
-        for each, own in found.items():
-            if mapping.setdefault(each, own) != own:
+        for ours, own in names.items():
+            if mapping.setdefault(ours, own) != own:
                 raise WiringError(
-                    f"{each} cannot be both {mapping[each]} and {own}; of two FMUs each can have a table of its own, "
+                    f"{ours} cannot be both {mapping[ours]} and {own}; of two FMUs each can have a table of its own, "
                     "named as its file: [mine] for mine.fmu"
                 )
     return mapping
@@ -62,15 +62,15 @@ def read(path: Path) -> dict[str, str]:
         entries = toml_entries(path)
     except (OSError, ValueError) as error:
         raise WiringError(f"{path}: {reason(error)}") from error
-    found: dict[str, str] = {}
+    mapping: dict[str, str] = {}
     for place, names in entries.items():
         if not isinstance(names, dict):
             raise WiringError(f"{path}: {place} = {names!r:.40}; it must be a table such as [plant]")
         for name, theirs in cast(dict[str, Any], names).items():
             if not (isinstance(theirs, str) and theirs):
                 raise WiringError(f"{path}: {place}.{name} = {theirs!r:.40}; it must be a name of the FMU in quotes")
-            found[f"{place}.{name}"] = theirs
-    return found
+            mapping[f"{place}.{name}"] = theirs
+    return mapping
 
 
 def apply(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:
@@ -100,8 +100,8 @@ def apply(system: System, interfaces: Mapping[str, Interface]) -> Iterator[str]:
                 interface.refused.add(ours)
                 yield f"{name} {problem} ({interface.path.name})"
         if taken:
-            each = ", ".join(f"{ours} in {'that of the SI' if unit == SI else unit}" for ours, unit in taken.items())
-            warn_once(f"{interface.path.name}: variables without a unit are taken to be in that of the loop: {each}")
+            assumed = ", ".join(f"{ours} in {'that of the SI' if unit == SI else unit}" for ours, unit in taken.items())
+            warn_once(f"{interface.path.name}: variables without a unit are taken to be in that of the loop: {assumed}")
 
 
 def _renamed(own: Mapping[str, ModelVariable], names: Mapping[str, str]) -> Iterator[tuple[str, ModelVariable]]:

@@ -23,7 +23,7 @@ from .experiment import Experiment
 from .instance import FMU2Traced, FMU3Traced, Instance, instantiated
 from .parameter_changes import Change, changes, initial
 from .results import Ended, Results
-from .steps import NOT_FINITE, MakeSteps, Refusal, made
+from .steps import NOT_FINITE, MakeSteps, Refusal, status_of
 from .system import Scheme
 from .unpacked_fmu import unpacked
 from .wiring import Fit, require, unknown
@@ -210,25 +210,25 @@ class Loop:
         Raises:
             SimulationError: an FMU refused a value.
         """
-        left = list(due)
+        pending = list(due)
         for part in steps:
             first = part.start
-            while left and left[0].step < part.stop:
-                change = left.pop(0)
+            while pending and pending[0].step < part.stop:
+                change = pending.pop(0)
                 yield range(first, change.step)
                 first = change.step
-                instance = next(each for each in self.instances if each.name == change.instance)
+                instance = next(instance for instance in self.instances if instance.name == change.instance)
                 instance.set_parameters({change.parameter: change.value})
             yield range(first, part.stop)
 
-    def _present(self, given: Mapping[str, Any]) -> dict[str, Any]:
+    def _present(self, parameters: Mapping[str, Any]) -> dict[str, Any]:
         """What is given without what the FMUs do not have.
 
         Raises:
             WiringError: that is more than they do without it.
         """
-        present = dict(given)
-        for name in self.fitted.absent.keys() & given.keys():
+        present = dict(parameters)
+        for name in self.fitted.absent.keys() & parameters.keys():
             only, value = self.fitted.absent[name], present.pop(name)
             if only is not None and np.any(value != only):
                 file = self.fitted.file(name)
@@ -285,7 +285,7 @@ class Loop:
                 if call.changed and call.changed():
                     due.add(call.instance.number)
                 if call.instance.number in due:
-                    _check(call, made(call))
+                    _check(call, status_of(call))
             if row == before:
                 data[: table.itemsize] = row[: table.itemsize]
                 return
@@ -293,11 +293,11 @@ class Loop:
         raise SimulationError("the outputs at the start do not settle: the connections form an algebraic loop")
 
 
-def _tolerance(instance: Instance, given: float | None) -> float | None:
+def _tolerance(instance: Instance, tolerance: float | None) -> float | None:
     """That of a run: the one that is given, else that of the FMU's default experiment."""
     default = instance.interface.description.defaultExperiment
     own = getattr(default, "tolerance", None)  # fmpy says not that there may be none
-    return float(own) if given is None and own is not None else given
+    return float(own) if tolerance is None and own is not None else tolerance
 
 
 def _has_ended(refusal: Refusal) -> bool:

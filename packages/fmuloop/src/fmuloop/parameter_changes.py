@@ -52,7 +52,7 @@ def changes(parameters: Mapping[str, float], time: NDArray[np.float64]) -> list[
     Raises:
         WiringError: no step begins then or later, or one parameter is set twice there.
     """
-    found: list[Change] = []
+    ordered: list[Change] = []
     size, last = float(time[1]), float(time[-2])
     for name, value in parameters.items():
         parameter, instant = parted(name)
@@ -62,10 +62,10 @@ def changes(parameters: Mapping[str, float], time: NDArray[np.float64]) -> list[
             raise WiringError(said("late", name=name, last=last))
         instance, _, own = parameter.partition(".")
         change = Change(ceil(instant / size - LATE), instance, own, value)
-        if any(other[:3] == change[:3] for other in found):
+        if any(other[:3] == change[:3] for other in ordered):
             raise WiringError(said("same_step", name=name, parameter=parameter))
-        found.append(change)
-    return sorted(found, key=lambda change: change.step)
+        ordered.append(change)
+    return sorted(ordered, key=lambda change: change.step)
 
 
 def require_constant(parameters: Mapping[str, float], what: str) -> None:

@@ -26,4 +26,4 @@ def said(what: str, /, **of: Any) -> str:
 
 def filled(text: str, /, **of: Any) -> str:
     """A text with what stands there in braces; numbers with six digits."""
-    return text.format(**{name: f"{each:g}" if isinstance(each, float) else each for name, each in of.items()})
+    return text.format(**{name: f"{value:g}" if isinstance(value, float) else value for name, value in of.items()})

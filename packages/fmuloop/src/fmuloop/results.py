@@ -49,9 +49,9 @@ class Results(np.ndarray):
     own_steps: Mapping[str, float] = MappingProxyType({})
 
     def __new__(cls, table: np.ndarray, units: Mapping[str, str], file: RowFile | None = None) -> Self:
-        made = table.view(cls)
-        made.units, made.file = units, file
-        return made
+        results = table.view(cls)
+        results.units, results.file = units, file
+        return results
 
     def __array_finalize__(self, source: Any) -> None:
         self.units = getattr(source, "units", {})
@@ -69,10 +69,10 @@ class Results(np.ndarray):
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, str) and key not in (names := self.dtype.names or ()):
             raise UnknownName(f"no column {key}; {nearest(key, names, every='there are')}")
-        found = super().__getitem__(key)
+        item = super().__getitem__(key)
         if not isinstance(key, str):
-            return found
-        column = np.asarray(found)
+            return item
+        column = np.asarray(item)
         if self.file is None:
             return column
         read = np.empty(column.shape, column.dtype)
@@ -87,10 +87,10 @@ class Results(np.ndarray):
 
     def pieces(self) -> Iterator[slice]:
         """The rows, piece by piece; what has been done with a piece takes no memory at the next one."""
-        each = max(1, RESIDENT // self.itemsize)
-        for start in range(0, len(self), each):
-            yield slice(start, start + each)
-            self.passed(min(each, len(self) - start))
+        count = max(1, RESIDENT // self.itemsize)
+        for start in range(0, len(self), count):
+            yield slice(start, start + count)
+            self.passed(min(count, len(self) - start))
 
     def passed(self, count: int) -> None:
         """So many rows more have been read or written."""

@@ -67,8 +67,8 @@ class Layout:
     """
 
     def __init__(self, interfaces: Mapping[str, Interface], inputs: Collection[str]) -> None:
-        given = {name: type_of(_variable(name, interfaces)) for name in inputs}
-        types = {"time": "Real"} | dict(sorted(given.items(), key=lambda item: list(KINDS).index(item[1])))
+        input_types = {name: type_of(_variable(name, interfaces)) for name in inputs}
+        types = {"time": "Real"} | dict(sorted(input_types.items(), key=lambda item: list(KINDS).index(item[1])))
         first_output = len(types)
         for instance, interface in interfaces.items():
             for kind in KINDS:

@@ -102,26 +102,26 @@ def transfers(system: System, interfaces: Mapping[str, Interface], slow: Collect
     """How the propagated scheme treats each input of a continuous FMU that a continuous output feeds."""
     order = list(interfaces)
     feedthrough = Feedthrough(system, interfaces)
-    found: dict[str, Transfer] = {}
+    transfer_of: dict[str, Transfer] = {}
     for source, target, _ in system.connections:
         (giver, output), (taker, taken) = source.split(".", 1), target.split(".", 1)
         is_ready = source in feedthrough.undeclared or not feedthrough.inputs[source]
         if not (_is_continuous(interfaces[giver], output) and _any_continuous(interfaces[taker])):
             continue
         if not interfaces[taker].can_move(taken) or {giver, taker} & {*slow}:
-            found[target] = Transfer.HELD
+            transfer_of[target] = Transfer.HELD
         elif order.index(giver) < order.index(taker) and is_ready:
-            found[target] = Transfer.INTERPOLATED
+            transfer_of[target] = Transfer.INTERPOLATED
         elif _claims(interfaces[giver]).maxOutputDerivativeOrder:
-            found[target] = Transfer.EXTRAPOLATED
+            transfer_of[target] = Transfer.EXTRAPOLATED
         else:
-            found[target] = Transfer.HELD
-    return found
+            transfer_of[target] = Transfer.HELD
+    return transfer_of
 
 
-def described(found: Mapping[str, Transfer]) -> str:
+def described(transfer_of: Mapping[str, Transfer]) -> str:
     """What to say of these transfers."""
-    how = [f"{name} is {transfer.value}" for name, transfer in found.items()]
+    how = [f"{name} is {transfer.value}" for name, transfer in transfer_of.items()]
     return f"over a step {', '.join(how)}" if how else "over a step every input is held"
 
 
@@ -179,7 +179,7 @@ def _propagation(feedthrough: Feedthrough, known: set[str]) -> Iterator[Action]:
 
 def _by_instance(names: Iterable[str]) -> dict[str, list[str]]:
     """Variables by instance, of names `instance.variable`, each once."""
-    found: dict[str, list[str]] = {}
+    variables: dict[str, list[str]] = {}
     for instance, _, variable in (name.partition(".") for name in dict.fromkeys(names)):
-        found.setdefault(instance, []).append(variable)
-    return found
+        variables.setdefault(instance, []).append(variable)
+    return variables

@@ -24,7 +24,7 @@ class Refusal(NamedTuple):
     instant: int
 
 
-def made(call: Call, time: float = AT_START) -> int:
+def status_of(call: Call, time: float = AT_START) -> int:
     """The status of a call that is made at a time in s; what it puts out is looked at."""
     note(call.instance.number, call.function, time)
     status = call.run()
@@ -53,7 +53,7 @@ def interpreted(begin: Sequence[Call], end: Sequence[Call], row: bytearray, know
                 continue
             if call.changed and not call.changed():
                 continue
-            status = made(call, time.value)
+            status = status_of(call, time.value)
             if status not in (fmi2OK, fmi2Warning):
                 return call, status
         return None

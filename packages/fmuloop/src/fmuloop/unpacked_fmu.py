@@ -45,6 +45,7 @@ def unpacked(interface: Interface, folder: Path | None = None) -> Iterator[Unpac
 
 def _find_binary(interface: Interface, binaries: Path) -> None:
     """Brings a binary that is in the folder of the other version of FMI to that of its own."""
+    # FMUs of FMI 2.0 come with x86_64-linux, those of FMI 3.0 with linux64
     own, other = str(fmpy.platform), str(fmpy.platform_tuple)
     if interface.fmi == 3:
         own, other = other, own

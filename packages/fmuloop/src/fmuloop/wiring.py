@@ -36,14 +36,14 @@ class Fit(NamedTuple):
         """Of the FMU that a variable `instance.variable` belongs to."""
         return self.interfaces[name.partition(".")[0]].path.name
 
-    def parameters(self, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    def parameters(self, values: Mapping[str, float]) -> dict[str, dict[str, float]]:
         """The numbers that the parameters have, by instance and name: those that are given, and where others start."""
-        found: dict[str, dict[str, float]] = {}
+        numbers: dict[str, dict[str, float]] = {}
         for instance, interface in self.interfaces.items():
             reals = [v for v in interface.of_causality("parameter") if v.type == "Real"]
             starts = {v.name: float(v.start) * interface.factors.get(v.name, 1.0) for v in reals if v.start is not None}
-            found[instance] = {name: given.get(f"{instance}.{name}", start) for name, start in starts.items()}
-        return found
+            numbers[instance] = {name: values.get(f"{instance}.{name}", start) for name, start in starts.items()}
+        return numbers
 
 
 def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = ()) -> Fit:
@@ -60,13 +60,13 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
         interfaces[name].any_value = True
     problems = list(mapping.apply(system, interfaces))
     absent = {name: value for name, value in system.optional.items() if _is_absent(name, interfaces)}
-    made = [each for each in system.offered if not any(_is_absent(end, interfaces) for end in each[:2])]
+    added = [wire for wire in system.offered if not any(_is_absent(end, interfaces) for end in wire[:2])]
     there = system.without(absent)
-    found = Fit(replace(there, connections=(*there.connections, *made)), interfaces, absent)
+    fitted = Fit(replace(there, connections=(*there.connections, *added)), interfaces, absent)
     problems += _duplicates(interfaces)
-    misfits = [*_misfits(found.system, interfaces)]
-    require([*problems, *misfits, *unknown(found, inputs, parameters), *_drafts(found.system, interfaces)])
-    return found
+    misfits = [*_misfits(fitted.system, interfaces)]
+    require([*problems, *misfits, *unknown(fitted, inputs, parameters), *_drafts(fitted.system, interfaces)])
+    return fitted
 
 
 def require(problems: Iterable[str]) -> None:
@@ -79,10 +79,10 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
     """What is wrong with the names that a run gives; those that are absent are not looked at."""
     targets = {connection.target for connection in fitted.system.connections}
     for causality, names in {"input": inputs, "parameter": parameters}.items():
-        for given in names:
-            name, time = parted(given)
+        for assigned in names:
+            name, time = parted(assigned)
             if time is not None:
-                yield from _fixed(given, fitted.interfaces)
+                yield from _fixed(assigned, fitted.interfaces)
             if name not in fitted.absent or time is not None:
                 variable, missing = find(name, causality, fitted.interfaces)
                 yield from missing
@@ -92,15 +92,15 @@ def unknown(fitted: Fit, inputs: Iterable[str], parameters: Iterable[str]) -> It
                 yield f"{name} is fed more than once"
 
 
-def _fixed(given: str, interfaces: Mapping[str, Interface]) -> Iterator[str]:
+def _fixed(assigned: str, interfaces: Mapping[str, Interface]) -> Iterator[str]:
     """What to say of a parameter that a run is to change and cannot."""
-    name, _ = parted(given)
+    name, _ = parted(assigned)
     variable, _ = find(name, "parameter", interfaces)
     if variable is not None and variable.variability != "tunable":
         interface = interfaces[name.partition(".")[0]]
         tunable = [v.name for v in interface.of_causality("parameter") if v.variability == "tunable"]
         known = f"tunable are {', '.join(tunable)}" if tunable else "none of its parameters is tunable"
-        fixed = said("fixed", name=given, file=interface.path.name, parameter=variable.name)
+        fixed = said("fixed", name=assigned, file=interface.path.name, parameter=variable.name)
         yield f"{fixed}; {known}"
 
 

@@ -81,16 +81,16 @@ def unchanged_if_stopped(pattern: str, *folders: Path) -> Iterator[None]:
     """Small files of that pattern in folders, and the folders, are as they were before when it is stopped; for what
     other threads write, which end after it was stopped."""
 
-    def found() -> set[Path]:
+    def matching() -> set[Path]:
         return {path for folder in folders for path in folder.glob(pattern)}
 
-    there = {path: path.read_bytes() for path in found()}
-    absent = {each for folder in folders for each in (folder, *folder.parents) if not each.exists()}
+    there = {path: path.read_bytes() for path in matching()}
+    absent = {path for folder in folders for path in (folder, *folder.parents) if not path.exists()}
     try:
         with unswallowed():
             yield
     except KeyboardInterrupt:
-        for path in found() - there.keys():
+        for path in matching() - there.keys():
             path.unlink()
         for path, content in there.items():
             if path.read_bytes() != content:

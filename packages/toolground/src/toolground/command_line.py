@@ -10,5 +10,5 @@ words: ContextVar[list[str] | None] = ContextVar("words", default=None)
 
 def command_line() -> str:
     """As a shell takes it."""
-    given = words.get()
-    return shlex.join(sys.argv if given is None else given)
+    arguments = words.get()
+    return shlex.join(sys.argv if arguments is None else arguments)

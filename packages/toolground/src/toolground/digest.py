@@ -14,5 +14,5 @@ def digest(path: Path) -> str:
 
 def digest_of_files(paths: Iterable[Path]) -> str:
     """SHA-256 of small files by their names and contents, wherever their folders are."""
-    each = sorted(path.name.encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest() for path in paths)
-    return hashlib.sha256(b"".join(each)).hexdigest()
+    lines = sorted(path.name.encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest() for path in paths)
+    return hashlib.sha256(b"".join(lines)).hexdigest()

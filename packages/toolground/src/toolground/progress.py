@@ -124,8 +124,8 @@ def _attend(total: int, label: str, counts: Sequence[float], ended: Event, shown
         while True:
             bar.update(task.id, completed=counts[0])
             if not animated and monotonic() >= due:
-                left = "" if task.time_remaining is None else f", {timedelta(seconds=task.time_remaining)} left"
-                print(f"{label}: {task.percentage:.0f} %{left}", file=shown, flush=True)
+                remaining = "" if task.time_remaining is None else f", {timedelta(seconds=task.time_remaining)} left"
+                print(f"{label}: {task.percentage:.0f} %{remaining}", file=shown, flush=True)
                 pause = min(2.0 * pause, MOST_PAUSE)
                 due = monotonic() + pause
             if ended.wait(REFRESH):

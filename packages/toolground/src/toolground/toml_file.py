@@ -39,18 +39,18 @@ def toml_entries(path: Path) -> dict[str, Any]:
         text = content.decode("utf-8-sig")  # some editors of Windows begin a file with a mark
     except UnicodeDecodeError as error:
         raise ValueError(f"not TOML: {error}") from error
-    if found := TOO_DEEP.search(text):
-        raise ValueError(f"the key {found[0]!r:.{SHOWN}} has more than {DEEPEST_TOML} parts")
-    if found := TOO_LONG.search(text):
-        raise ValueError(f"the number {found[0]:.{SHOWN}} ... has more than {MOST_DIGITS} digits")
+    if match := TOO_DEEP.search(text):
+        raise ValueError(f"the key {match[0]!r:.{SHOWN}} has more than {DEEPEST_TOML} parts")
+    if match := TOO_LONG.search(text):
+        raise ValueError(f"the number {match[0]:.{SHOWN}} ... has more than {MOST_DIGITS} digits")
     _require_shallow(text)
     try:
         return tomllib.loads(text)
     except ValueError as error:
         named = re.search(r"at line (\d+)", str(error))
         line = text.split("\n")[int(named[1]) - 1].strip() if named else ""
-        if found := UNQUOTED.match(line):
-            advice = f'; a number with a unit stands in quotes, {found[1]} = "{found[2].strip()}"'
+        if match := UNQUOTED.match(line):
+            advice = f'; a number with a unit stands in quotes, {match[1]} = "{match[2].strip()}"'
         else:
             advice = f": {line!r:.{SHOWN}}" if line else ""
         raise ValueError(f"not TOML: {error}{advice}") from error
@@ -58,8 +58,8 @@ def toml_entries(path: Path) -> dict[str, Any]:
 
 def _require_shallow(text: str) -> None:
     depth = 0
-    for found in BRACKET.finditer(text):
-        depth += bool(found["opens"]) - bool(found["closes"])
+    for bracket in BRACKET.finditer(text):
+        depth += bool(bracket["opens"]) - bool(bracket["closes"])
         if depth > DEEPEST_TOML:
-            line = text.count("\n", 0, found.start()) + 1
+            line = text.count("\n", 0, bracket.start()) + 1
             raise ValueError(f"line {line} has brackets in brackets, more than {DEEPEST_TOML} deep")

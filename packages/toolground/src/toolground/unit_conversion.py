@@ -121,24 +121,24 @@ def converts(unit: str, target_unit: str) -> bool:
 
 def _finite(unit: str, target_unit: str) -> float:
     try:
-        one = _factor(unit, target_unit)
+        factor = _factor(unit, target_unit)
     except OverflowError:
-        one = 0.0
-    if not (isfinite(one) and one):
+        factor = 0.0
+    if not (isfinite(factor) and factor):
         raise ValueError(f"is in {unit}, whose factor to {target_unit} is larger or smaller than a number can be")
-    return one
+    return factor
 
 
 def _factor(unit: str, target_unit: str) -> float:
     registry = _registry()
-    given = _parsed(unit, registry)
-    base = registry.get_base_units(given)[1] if target_unit == SI else _parsed(target_unit, registry)
-    if not given.is_compatible_with(base):
+    source = _parsed(unit, registry)
+    base = registry.get_base_units(source)[1] if target_unit == SI else _parsed(target_unit, registry)
+    if not source.is_compatible_with(base):
         raise ValueError(f"is in {unit}, which does not convert into {target_unit}")
-    zero, one = (registry.convert(value, given, base) for value in (0.0, 1.0))
+    zero, unit_factor = (registry.convert(value, source, base) for value in (0.0, 1.0))
     if zero:
         raise ValueError(f"is in {unit}, which has an offset to {target_unit}; only factors are converted")
-    return float(one)
+    return float(unit_factor)
 
 
 def known(unit: str) -> bool:

@@ -4,8 +4,8 @@ from pythonfmu import Fmi2Causality, Fmi2Slave, Real
 
 
 class SmallestController(Fmi2Slave):
-    def __init__(self, **given) -> None:
-        super().__init__(**given)
+    def __init__(self, **arguments) -> None:
+        super().__init__(**arguments)
         self.T_driver = self.omega_1_meas = self.T_ref = 0.0
         self.slow = None
         for name in ("T_driver", "omega_1_meas"):

@@ -87,15 +87,15 @@ def variables(record: type[Any]) -> tuple[Quantity, ...]:
     """
     hints = get_type_hints(record, include_extras=True)
     defaults = record._field_defaults
-    found: list[Quantity] = []
+    quantities: list[Quantity] = []
     for name, hint in hints.items():
         declared = [m for m in getattr(hint, "__metadata__", ()) if isinstance(m, Declaration)]
         if not declared and (isinstance(hint, TypeVar) or hasattr(hint, "_fields")):
             continue
         if not declared:
             raise TypeError(f"{record.__module__}.{record.__name__}.{name} has no declaration")
-        found.append(Quantity(name, declared[0], defaults.get(name)))
-    return tuple(found)
+        quantities.append(Quantity(name, declared[0], defaults.get(name)))
+    return tuple(quantities)
 
 
 def merged(name: str, *records: type[Any]) -> type[Any]:
@@ -143,6 +143,6 @@ def _fields(record: type[Any]) -> dict[str, tuple[Any, Any]]:
 
 def _record(name: str, fields: Mapping[str, tuple[Any, Any]]) -> type[Any]:
     starts = [start for _, start in fields.values()]
-    made = namedtuple(name, fields, defaults=starts)  # pyright: ignore[reportUntypedNamedTuple]
-    made.__annotations__ = {field: hint for field, (hint, _) in fields.items()}
-    return made
+    record = namedtuple(name, fields, defaults=starts)  # pyright: ignore[reportUntypedNamedTuple]
+    record.__annotations__ = {field: hint for field, (hint, _) in fields.items()}
+    return record

@@ -15,7 +15,7 @@ MOST_BITS = 32
 """Of a whole number on the bus."""
 
 
-def one(p: Record) -> float:
+def unity(p: Record) -> float:
     return 1.0
 
 
@@ -38,8 +38,8 @@ class Content:
     quantity: str
     unit: str
     bits: int
-    resolution: Callable[[Any], float] | None = one
-    factor: Callable[[Any], float] = one
+    resolution: Callable[[Any], float] | None = unity
+    factor: Callable[[Any], float] = unity
     largest: Callable[[Any], float] | None = None
     meaning: str = ""
 

@@ -44,22 +44,22 @@ class Implicit:
         Raises:
             NotIntegrable: the steps become too short or too many.
         """
-        left = length = duration
+        remaining = length = duration
         dx = self._derivative(x, u, p)
         jacobian = self._jacobian(x, dx, u, p)
         for _ in range(MOST_STEPS):
             work.steps += IMPLICIT_WORK
             end, error = self._step(x, dx, jacobian, u, p, length)
             if error <= 1.0:
-                left -= length
+                remaining -= length
                 x = end
-                if left <= 0.0:
+                if remaining <= 0.0:
                     return x
                 dx = self._derivative(x, u, p)
                 jacobian = self._jacobian(x, dx, u, p)
             elif length < SHORTEST_STEP:
                 break
-            length = min(left, length * change(error, 2))
+            length = min(remaining, length * change(error, 2))
         raise NotIntegrable(self.fastest(x, dx))
 
     def _jacobian(self, x: Record, dx: Record, u: object, p: object) -> Matrix:
@@ -79,13 +79,13 @@ class Implicit:
         order = factorised(rows, 1.0 / (h * GAMMA))
         if not order:
             return x, math.inf
-        at, rate, found = x, dx, Matrix()
+        at, rate, stages = x, dx, Matrix()
         for i, (weights, rates) in enumerate(zip(A, G, strict=True)):
             if i > 0:
-                at = self._State._make(x[n] + weighted(weights, found, n) for n in self._size)
+                at = self._State._make(x[n] + weighted(weights, stages, n) for n in self._size)
                 rate = self._derivative(at, u, p)
-            found.append(solved(rows, order, [rate[n] + weighted(rates, found, n) / h for n in self._size]))
-        last = found[-1]
+            stages.append(solved(rows, order, [rate[n] + weighted(rates, stages, n) / h for n in self._size]))
+        last = stages[-1]
         end = self._State._make(at[n] + last[n] for n in self._size)
         total = 0.0
         for n in self._size:
@@ -99,10 +99,10 @@ class Implicit:
         return self._State._fields[max(self._size, key=lambda n: changes[n])]
 
 
-def weighted(weights: tuple[float, ...], found: Matrix, n: int) -> float:
+def weighted(weights: tuple[float, ...], stages: Matrix, n: int) -> float:
     total = 0.0
     for j, weight in enumerate(weights):
-        total += weight * found[j][n]
+        total += weight * stages[j][n]
     return total
 
 

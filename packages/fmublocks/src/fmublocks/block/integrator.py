@@ -96,19 +96,19 @@ class Integrator:
             x = self._advance_through(start, duration / stretches, sides)
         return x
 
-    def _advance_through(self, start: Start, left: float, sides: list[bool]) -> Record:
-        """The state after a stretch of length `left`, split at every event on its way.
+    def _advance_through(self, start: Start, remaining: float, sides: list[bool]) -> Record:
+        """The state after a stretch of length `remaining`, split at every event on its way.
 
         `sides` says on which side of each zero the state is, and is kept up to date. It is
         remembered rather than looked up: at a crossing the value is zero but for rounding.
         """
-        (u, p, work), longest, located = start[2:], left, 0
+        (u, p, work), longest, located = start[2:], remaining, 0
         if work.steps > MOST_WORK:
             raise TooMuchWork(self.implicit.fastest(start.x, start.dx))
         for _ in range(MOST_TRIALS):
-            length, crossed = min(left, longest), None
+            length, crossed = min(remaining, longest), None
             x_end, error = self._try(start, length)
-            if not error <= self.allowed_error and self._is_stiff(start, x_end, left):
+            if not error <= self.allowed_error and self._is_stiff(start, x_end, remaining):
                 break
             if error <= COARSE_ERROR and located < MOST_CROSSINGS:
                 crossings = self._crossings(start, length, x_end, sides)
@@ -116,16 +116,16 @@ class Integrator:
                     length, crossed = min(crossings)
                     x_end, error = self._try(start, length)
             if error <= self.allowed_error:
-                left -= length
+                remaining -= length
                 if crossed is not None:
                     sides[crossed] = not sides[crossed]
                     located += 1
-                if left <= LOCATION_TOLERANCE:
+                if remaining <= LOCATION_TOLERANCE:
                     return x_end
                 start = start._replace(x=x_end, dx=self.derivative(x_end, u, p))
             if crossed is None or not error <= self.allowed_error:
                 longest = length * change(error / self.allowed_error, 3)
-        x = self.implicit.advance(start.x, u, p, left, work)
+        x = self.implicit.advance(start.x, u, p, remaining, work)
         sides[:] = self._sides(x, u, p)
         return x
 
@@ -134,7 +134,7 @@ class Integrator:
         start.work.steps += 1
         return self.trial(*start[:4], length)
 
-    def _is_stiff(self, start: Start, x_end: Record, left: float) -> bool:
+    def _is_stiff(self, start: Start, x_end: Record, remaining: float) -> bool:
         """Whether the state changes too fast for explicit steps.
 
         The fastest rate is found by power iteration from the way of a step that failed: what a small change of the
@@ -152,7 +152,7 @@ class Integrator:
             there = self.derivative(near, start.u, start.p)
             way = [fast - slow for fast, slow in zip(there, dx, strict=True)]
             size = self._size(way, x)
-        return not left * size <= STIFF
+        return not remaining * size <= STIFF
 
     def _size(self, way: list[float], x: Record) -> float:
         """Of a change of the state x, in units of what is tolerated."""
@@ -171,14 +171,14 @@ class Integrator:
             return []
         end = self.event_indicators(x_end, start.u, start.p)
         straight = self.event_indicators(self.tangent(*start[:4], h), start.u, start.p)
-        found: list[tuple[float, int]] = []
+        crossings: list[tuple[float, int]] = []
         for n, side in enumerate(sides):
             beyond = h if is_beyond(end[n], side) else None
             if beyond is None and is_beyond(straight[n], side):
                 beyond = self._excursion(n, start, h, x_end, side)
             if beyond is not None:
-                found.append((self._locate(n, start, beyond, side), n))
-        return found
+                crossings.append((self._locate(n, start, beyond, side), n))
+        return crossings
 
     def _indicator(self, n: int, x: Record, start: Start) -> float:
         return self.event_indicators(x, start.u, start.p)[n]

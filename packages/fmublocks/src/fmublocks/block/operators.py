@@ -184,10 +184,10 @@ def element(values: Sequence[Number], position: float) -> Number:
     """The value at the whole part of a position; the first or the last one beyond either end."""
     if position.__class__ is float:
         return values[min(max(int(position), 0), len(values) - 1)]
-    found = values[0]
+    result = values[0]
     for k, value in enumerate(values[1:], 1):
-        found = where(position >= float(k), value, found)
-    return found
+        result = where(position >= float(k), value, result)
+    return result
 
 
 def interpolate(values: Sequence[float], position: float) -> float:

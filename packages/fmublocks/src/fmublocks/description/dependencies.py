@@ -25,8 +25,8 @@ def sources(value: Any) -> frozenset[str]:
     return value.sources if isinstance(value, Dependent) else frozenset()
 
 
-def _union(found: Iterable[frozenset[str]]) -> frozenset[str]:
-    return frozenset[str]().union(*found)
+def _union(sets: Iterable[frozenset[str]]) -> frozenset[str]:
+    return frozenset[str]().union(*sets)
 
 
 def _symbols(record: type[Any], named: bool, name: Callable[[str], str] = str) -> Any:

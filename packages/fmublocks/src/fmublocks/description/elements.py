@@ -145,12 +145,12 @@ def dependencies(on: Iterable[str], numbers: Mapping[str, int]) -> dict[str, str
 
 def limits(declaration: Integer | Real, unlimited: Integer | Real) -> dict[str, str]:
     """The bounds that say more than those of an unlimited declaration."""
-    found: dict[str, str] = {}
+    attributes: dict[str, str] = {}
     if declaration.minimum != unlimited.minimum:
-        found["min"] = text(declaration.minimum)
+        attributes["min"] = text(declaration.minimum)
     if declaration.maximum != unlimited.maximum:
-        found["max"] = text(declaration.maximum)
-    return found
+        attributes["max"] = text(declaration.maximum)
+    return attributes
 
 
 def written(root: Element) -> bytes:

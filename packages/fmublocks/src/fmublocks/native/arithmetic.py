@@ -193,13 +193,13 @@ class Recording(Graph):
 
     def needed(self, outputs: Iterable[int]) -> list[int]:
         """The nodes that others need, and these, in their order."""
-        found, waiting = set[int](), list(outputs)
+        needed, waiting = set[int](), list(outputs)
         while waiting:
             k = waiting.pop()
-            if k not in found:
-                found.add(k)
+            if k not in needed:
+                needed.add(k)
                 waiting += self.nodes[k].operands
-        return sorted(found)
+        return sorted(needed)
 
 
 class TracedGraph(Graph):
@@ -218,7 +218,7 @@ class TracedGraph(Graph):
         self._ladders: dict[int, Ladder] = {}
         held: dict[int, int] = {}
         for k in recording.needed(outputs):
-            node = recording.nodes[k]._replace(operands=tuple(held[each] for each in recording.nodes[k].operands))
+            node = recording.nodes[k]._replace(operands=tuple(held[operand] for operand in recording.nodes[k].operands))
             if node.operation == "INPUT":
                 vector, element = node.place
                 node = node._replace(value=(vectors.index(vector), element))
@@ -289,7 +289,7 @@ class TracedSymbol(Symbol):
         self.recording, self.node = recording, node
 
     def after(self, operation: str, *operands: Any) -> "TracedSymbol":
-        nodes = (node_of(each, self.recording) for each in operands)
+        nodes = (node_of(operand, self.recording) for operand in operands)
         return TracedSymbol(self.recording, self.recording.after(operation, *nodes))
 
 

@@ -168,9 +168,9 @@ def compile_in(command: Sequence[str], binary: str, sources: Mapping[str, bytes]
     """
     with _folder_of(sources) as folder:
         run_compiler(command, folder)
-        if not (made := folder / binary).is_file():
+        if not (output := folder / binary).is_file():
             raise CompilerError(f"{' '.join(command)}\nit ended well and made no {binary}")
-        return made.read_bytes()
+        return output.read_bytes()
 
 
 def _compiled_for_windows(zig: Sequence[str], binary: str, sources: Mapping[str, bytes]) -> bytes:

@@ -56,19 +56,19 @@ def lane_sources(fmu: Fmu) -> dict[str, bytes]:
     """All C files by name."""
     block = fmu.block
     records = records_of(block)
-    traced = tuple(each for each in trace(block) if each.name not in RARE)
-    made = functions(traced, records, LANES, NAMES, statements=LaneStatements)
+    traced = tuple(function for function in trace(block) if function.name not in RARE)
+    code = functions(traced, records, LANES, NAMES, statements=LaneStatements)
     head = BLOCK.format(
         name=fmu.name,
         module=fmu.module,
-        structs="\n\n".join(structs(records, NAMES, len(made.terms))),
-        prototypes="\n".join(f"static {head};" for head, _ in made.heads),
+        structs="\n\n".join(structs(records, NAMES, len(code.terms))),
+        prototypes="\n".join(f"static {head};" for head, _ in code.heads),
     )
     continuous = isinstance(block, ContinuousBlock)
     sources = c_sources(fmu) | {name: (C_FILES / name).read_bytes() for name in ("lanes.h", "lanes.c", "lane_loop.c")}
     return sources | {
         "lane_block.h": head.encode(),
-        "lane_block.c": made.text.encode(),
+        "lane_block.c": code.text.encode(),
         "lane_dop853.h": lane_step_header().encode(),
         "whole.c": WHOLE.format(integrator=INTEGRATOR if continuous else "").encode(),
     }

@@ -18,12 +18,12 @@ def rates(recording: Recording, values: Iterable[int], moving: Mapping[int, int]
         moving: nodes that move, and the nodes of their rates.
     """
     values, algebra = list(values), _Algebra(recording)
-    found: dict[int, Rate] = dict(moving)
+    rate_of: dict[int, Rate] = dict(moving)
     for k in recording.needed(values):
-        if k not in found:
+        if k not in rate_of:
             operands = recording.nodes[k].operands
-            found[k] = algebra.rate(k, [found[each] for each in operands])
-    return [algebra.node(found[k]) for k in values]
+            rate_of[k] = algebra.rate(k, [rate_of[operand] for operand in operands])
+    return [algebra.node(rate_of[k]) for k in values]
 
 
 class _Algebra:
@@ -41,7 +41,7 @@ class _Algebra:
         operation, operands, _ = self._recording.nodes[k]
         if operation == "CHOICE":
             return self._choice(operands[0], *rates[1:])
-        if all(each is None for each in rates):
+        if all(rate is None for rate in rates):
             return None
         match operation:
             case "ADD":

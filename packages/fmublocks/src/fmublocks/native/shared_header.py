@@ -40,12 +40,12 @@ def shared_header() -> str:
 
 def _definitions(module: ModuleType) -> list[str]:
     meanings, taken = _meanings(module), _taken(module)
-    found = [
+    definitions = [
         (name, definition(name, value))
         for name, value in vars(module).items()
         if name[0].isupper() and name not in taken
     ]
-    return [f"/* {meanings[name]} */\n{text}" if name in meanings else text for name, text in found if text]
+    return [f"/* {meanings[name]} */\n{text}" if name in meanings else text for name, text in definitions if text]
 
 
 def _taken(module: ModuleType) -> set[str]:

@@ -75,24 +75,24 @@ def block_sources(fmu: Fmu, precision: Precision = DOUBLE, others: tuple[Traced,
     """
     block = fmu.block
     records, traced = records_of(block), (*trace(block), *others)
-    made = functions(traced, records, precision)
+    code = functions(traced, records, precision)
     about = {"name": fmu.name, "description": block.description, "module": fmu.module}
     header = HEADER.format(
         **about,
         equations=fmu.equations.replace("*/", "* /").strip(),
         precision=precision,
-        structs="\n\n".join(structs(records, terms=len(made.terms))),
-        constants="\n".join(_constants(fmu, traced, made.held)),
-        prototypes="\n".join(f"/* {meaning} */\nstatic {head};" for head, meaning in made.heads),
+        structs="\n\n".join(structs(records, terms=len(code.terms))),
+        constants="\n".join(_constants(fmu, traced, code.held)),
+        prototypes="\n".join(f"/* {meaning} */\nstatic {head};" for head, meaning in code.heads),
     )
-    return {"block.h": header, "block.c": SOURCE.format(**about, functions=made.text)}
+    return {"block.h": header, "block.c": SOURCE.format(**about, functions=code.text)}
 
 
 def _constants(fmu: Fmu, traced: tuple[Traced, ...], held: int) -> list[str]:
     """What else there is to know of the block."""
     if isinstance(fmu.block, SampledBlock):
         return [f"#define SAMPLE_TIME {fmu.block.sample_time!r} /* s */"]
-    sizes = {each.name: len(each.values) for each in traced}
+    sizes = {function.name: len(function.values) for function in traced}
     return [
         f"#define LONGEST_STEP {fmu.block.step_size!r} /* s: of the integration */",
         f"#define ALLOWED_ERROR {fmu.block.allowed_error!r} /* of a step, in units of what is tolerated */",
@@ -156,18 +156,18 @@ def functions(
         heads.append((_line(f"{names.function}{name}", arguments), MEANINGS[name]))
         texts.append(_function(heads[-1][0], lines, used))
 
-    for each in traced:
-        graph = each.graph([_lvalues(name, records) for name in each.arguments])
-        if computed_once and each.name not in RARE:
-            terms.take(graph, [each.arguments.index("p")])
-        if each.name == "derivative":
-            held.take(graph, [each.arguments.index("u"), each.arguments.index("p"), len(graph.inputs) - 1])
-        size = len(each.values)
-        outputs = [f"z[{k}]" for k in range(size)] if each.result == "z" else _lvalues(each.result, records)
-        lines, arguments = statements(graph, outputs, precision).lines, _arguments(each, names)
-        if each.name == "derivative" and held.outputs:
+    for function in traced:
+        graph = function.graph([_lvalues(name, records) for name in function.arguments])
+        if computed_once and function.name not in RARE:
+            terms.take(graph, [function.arguments.index("p")])
+        if function.name == "derivative":
+            held.take(graph, [function.arguments.index("u"), function.arguments.index("p"), len(graph.inputs) - 1])
+        size = len(function.values)
+        outputs = [f"z[{k}]" for k in range(size)] if function.result == "z" else _lvalues(function.result, records)
+        lines, arguments = statements(graph, outputs, precision).lines, _arguments(function, names)
+        if function.name == "derivative" and held.outputs:
             x, u, p, dx = arguments
-            add("derivative_held", [x, u, p, f"const {names.real} w[]", dx], lines, each.arguments)
+            add("derivative_held", [x, u, p, f"const {names.real} w[]", dx], lines, function.arguments)
             moving = [u, p, u.replace("*u", "*du"), f"{names.real} w[]"]
             add("held_terms", moving, _held_lines(held, partial(statements, precision=precision)), "up")
             lines = [
@@ -175,7 +175,7 @@ def functions(
                 f"    {names.function}held_terms(u, p, 0, w);",
                 f"    {names.function}derivative_held(x, u, p, w, dx);",
             ]
-        add(each.name, arguments, lines, each.arguments)
+        add(function.name, arguments, lines, function.arguments)
     if computed_once:
         add("compute_terms", [f"{names.struct}Parameters *p"], statements(terms, terms.names(), precision).lines, "p")
     declared = terms.values(list(map(float, records["p"])))
@@ -192,14 +192,14 @@ def _held_lines(held: Terms, statements: Callable[[Graph, list[str]], Statements
     return lines
 
 
-def _arguments(each: Traced, names: Names) -> list[str]:
+def _arguments(function: Traced, names: Names) -> list[str]:
     """Those of a function in C."""
 
     def pointer(name: str) -> str:
         return f"{names.struct}{RECORDS[_letter(name)]} *{name}"
 
-    arguments = [f"{names.real} h" if name == "h" else f"const {pointer(name)}" for name in each.arguments]
-    return [*arguments, f"{names.real} z[]" if each.result == "z" else pointer(each.result)]
+    arguments = [f"{names.real} h" if name == "h" else f"const {pointer(name)}" for name in function.arguments]
+    return [*arguments, f"{names.real} z[]" if function.result == "z" else pointer(function.result)]
 
 
 def _line(name: str, arguments: list[str]) -> str:

@@ -165,10 +165,10 @@ class Statements:
         """The node itself, or, if it is a choice that has been made, what was chosen."""
         node = self._graph.nodes[k]
         while node.operation == "CHOICE":
-            made = [place for place in (1, 2) if (node.operands[0], place == 1) in context]
-            if not made:
+            sides = [place for place in (1, 2) if (node.operands[0], place == 1) in context]
+            if not sides:
                 break
-            k = node.operands[made[0]]
+            k = node.operands[sides[0]]
             node = self._graph.nodes[k]
         return k
 
@@ -233,7 +233,7 @@ class Statements:
     def _around(self, choice: int, context: frozenset[Guard]) -> list[int]:
         """Nodes outside both sides of a choice that are needed inside."""
         node = self._graph.nodes[choice]
-        found: list[int] = []
+        outside: list[int] = []
         seen: set[int] = set()
         for place in (1, 2):
             inside = context | {(node.operands[0], place == 1)}
@@ -246,8 +246,8 @@ class Statements:
                 if self._guards[k] >= inside:
                     waiting += self._graph.nodes[k].operands
                 else:
-                    found.append(k)
-        return sorted(found)
+                    outside.append(k)
+        return sorted(outside)
 
     def _depends(self, nodes: Iterable[int], on: list[int]) -> bool:
         """Whether one of the nodes, as far as they are not available, needs a node of `on`."""

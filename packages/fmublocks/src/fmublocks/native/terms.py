@@ -51,8 +51,8 @@ class Terms(Graph):
     def _inputs_of(self, k: int) -> tuple[str, ...]:
         of = copy(self)
         of.outputs = {0: k}
-        found = sorted(self.nodes[n] for n in of.users() if self.nodes[n].operation in ("INPUT", "ELEMENT"))
-        return tuple(self.inputs[0][node.place[1]] for node in found if node.place[0] == 0)
+        inputs = sorted(self.nodes[n] for n in of.users() if self.nodes[n].operation in ("INPUT", "ELEMENT"))
+        return tuple(self.inputs[0][node.place[1]] for node in inputs if node.place[0] == 0)
 
     def names(self) -> list[str]:
         """What C calls each of them."""
@@ -73,15 +73,15 @@ class Terms(Graph):
 
     def values(self, parameters: Sequence[float]) -> list[float]:
         """Those that depend on parameters alone, for values of these."""
-        p, found = np.array(parameters, float), dict[int, Any]()
+        p, value_of = np.array(parameters, float), dict[int, Any]()
         with np.errstate(all="ignore"):
             for k in sorted(self.users()):
-                found[k] = _value(self.nodes[k], p, found)
-        return [float(found[k]) for _, k in sorted(self.outputs.items())]
+                value_of[k] = _value(self.nodes[k], p, value_of)
+        return [float(value_of[k]) for _, k in sorted(self.outputs.items())]
 
 
-def _value(node: Node, p: np.ndarray, found: Mapping[int, Any]) -> Any:
-    operands = [found[k] for k in node.operands]
+def _value(node: Node, p: np.ndarray, value_of: Mapping[int, Any]) -> Any:
+    operands = [value_of[k] for k in node.operands]
     match node.operation:
         case "CONSTANT":
             return np.float64(node.number)
@@ -102,14 +102,14 @@ def _is_term(node: Node) -> bool:
 
 def _first(graph: Graph, wanted: Callable[[int], bool]) -> set[int]:
     """The wanted nodes that the outputs need, without those that only wanted ones need."""
-    found, seen, waiting = set[int](), set[int](), list(graph.outputs.values())
+    first, seen, waiting = set[int](), set[int](), list(graph.outputs.values())
     while waiting:
         k = waiting.pop()
         if k in seen:
             continue
         seen.add(k)
         if wanted(k):
-            found.add(k)
+            first.add(k)
         else:
             waiting += graph.nodes[k].operands
-    return found
+    return first

@@ -68,7 +68,7 @@ def trace(block: Block) -> tuple[Traced, ...]:
         results["update"] = ("xup", "next", block.update(x, u, p))
     traced = [vectors.traced(name, arguments, result, value) for name, (arguments, result, value) in results.items()]
     if isinstance(block, ContinuousBlock):
-        by_name = {each.name: each for each in traced}
+        by_name = {function.name: function for function in traced}
         traced.append(vectors.rate("output_rate", by_name["output"], ("x", "u")))
         for name in ("output", "derivative", "start"):
             traced.append(vectors.rate(f"{name}_tangent", by_name[name], by_name[name].arguments))

@@ -72,14 +72,14 @@ def xcp_entries(fmu: Fmu, header: str, binaries: Mapping[str, bytes]) -> dict[st
     behind = re.search(rf"\b{TERMS}\[(\d+)\];", header)
     terms, file = int(behind[1]) if behind else 0, f"{fmu.name}.a2l"
     symbol = f"{fmu.name}_instance"
-    found = {f"{FOLDER}/fmi-ls-manifest.xml": _manifest(fmu, file)}
-    found[f"{FOLDER}/{file}"] = _a2l(fmu, terms, symbol, 0)
+    entries = {f"{FOLDER}/fmi-ls-manifest.xml": _manifest(fmu, file)}
+    entries[f"{FOLDER}/{file}"] = _a2l(fmu, terms, symbol, 0)
     for path, binary in binaries.items():
         platform, address = PurePosixPath(path).parent.name, address_in(binary, symbol)
         if address is not None:
-            found[f"{FOLDER}/{platform}/{file}"] = _a2l(fmu, terms, symbol, address)
-    found["documentation/fmi-ls-xcp.txt"] = PAGE.format(name=fmu.name, folder=FOLDER).encode()
-    return found
+            entries[f"{FOLDER}/{platform}/{file}"] = _a2l(fmu, terms, symbol, address)
+    entries["documentation/fmi-ls-xcp.txt"] = PAGE.format(name=fmu.name, folder=FOLDER).encode()
+    return entries
 
 
 def _manifest(fmu: Fmu, file: str) -> bytes:

@@ -95,10 +95,10 @@ def bundle(fmu: Fmu) -> dict[str, bytes]:
 def _file(module: str) -> Path:
     """Of a module; that of a user may be in no folder in which modules are looked for."""
     file = getattr(sys.modules.get(module), "__file__", None)
-    found = Path(file) if file else source_of(module)
-    if found is None or not found.is_file():
+    path = Path(file) if file else source_of(module)
+    if path is None or not path.is_file():
         raise BuildError(f"there is no source of the module {module}, which a Python build carries along")
-    return found
+    return path
 
 
 def _carried(module: str, path: Path, roots: set[str]) -> tuple[bytes, set[str]]:
@@ -111,7 +111,7 @@ def _carried(module: str, path: Path, roots: set[str]) -> tuple[bytes, set[str]]
     lines, modules = source.decode().splitlines(keepends=True), set[str]()
     up = "." * (package.count(".") + 2 if package else 1)
     for node in _imports(source):
-        bases = [name_of(node, package)] if isinstance(node, ast.ImportFrom) else [each.name for each in node.names]
+        bases = [name_of(node, package)] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names]
         outer = [base.partition(".")[0] for base in bases]
         if strangers := [root for root in outer if root not in {*roots, *sys.stdlib_module_names}]:
             raise BuildError(f"{path}, line {node.lineno}: {strangers[0]}: {OWN}")
@@ -133,8 +133,8 @@ def _carried(module: str, path: Path, roots: set[str]) -> tuple[bytes, set[str]]
 
 def _imports(source: bytes) -> list[ast.Import | ast.ImportFrom]:
     """The statements that import, the last first, so that lines can be replaced one after the other."""
-    found = [node for node in ast.walk(syntax_tree(source)) if isinstance(node, ast.Import | ast.ImportFrom)]
-    return sorted(found, key=lambda node: node.lineno, reverse=True)
+    nodes = [node for node in ast.walk(syntax_tree(source)) if isinstance(node, ast.Import | ast.ImportFrom)]
+    return sorted(nodes, key=lambda node: node.lineno, reverse=True)
 
 
 def _definition(base: str, name: str) -> tuple[str, str]:
@@ -143,11 +143,11 @@ def _definition(base: str, name: str) -> tuple[str, str]:
     if source_of(f"{base}.{name}"):
         return base, name
     module = import_module(base)
-    found = getattr(module, name)
-    if isinstance(found, ModuleType):
-        holder, _, name = found.__name__.rpartition(".")
+    value = getattr(module, name)
+    if isinstance(value, ModuleType):
+        holder, _, name = value.__name__.rpartition(".")
         return holder, name
-    return (base, name) if name in vars(module) else (found.__module__, found.__name__)
+    return (base, name) if name in vars(module) else (value.__module__, value.__name__)
 
 
 def package_name(fmu: Fmu, files: Mapping[str, bytes]) -> str:

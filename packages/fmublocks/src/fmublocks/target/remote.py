@@ -95,11 +95,11 @@ def numbers(record: Any) -> list[float]:
 
 def like(record: Any, values: Sequence[float]) -> Any:
     """A record of the shape and the types of another with these numbers."""
-    left = iter(values)
+    numbers = iter(values)
 
-    def made(item: Any) -> Any:
+    def alike(item: Any) -> Any:
         if not is_tuple(item):
-            return type(item)(next(left))
-        return getattr(type(item), "_make", tuple)([made(inner) for inner in item])
+            return type(item)(next(numbers))
+        return getattr(type(item), "_make", tuple)([alike(inner) for inner in item])
 
-    return made(record)
+    return alike(record)

@@ -89,7 +89,7 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
     file = fmu.module.rpartition(".")[2]
     names = Names(precision.real, fmu.name, f"{file}_")
     records = records_of(block)
-    made = functions(trace(block), records, precision, names, computed_once=False)
+    code = functions(trace(block), records, precision, names, computed_once=False)
     about = {"description": block.description, "module": fmu.module, "file": file, **names._asdict()}
     header = HEADER.format(
         **about,
@@ -99,14 +99,14 @@ def target_sources(fmu: Fmu, precision: Precision) -> dict[str, str]:
         sample_time=constant(block.sample_time, precision),
         structs="\n\n".join(structs(records, names)),
         enumerations="\n\n".join(_enumerations(block.Output, names)),
-        prototypes="\n".join(f"/* {meaning} */\n{head};" for head, meaning in made.heads),
+        prototypes="\n".join(f"/* {meaning} */\n{head};" for head, meaning in code.heads),
     )
     source = SOURCE.format(
         **about,
         parameters="\n".join(
             f"    .{name} = {constant(float(value), precision)}," for name, value in records["p"]._asdict().items()
         ),
-        functions=made.text,
+        functions=code.text,
     )
     return {f"{file}.h": header, f"{file}.c": source, "controller.h": ANY.format(**about, macro=file.upper())}
 
