@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from math import inf, isfinite, isnan
 
 from driveline.harness.loop.places import PLACES, PLANTS
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.resolved import resolve
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.estimate import EstimateMetrics
 from driveline.harness.metrics.run_metrics import Metrics
@@ -150,7 +150,7 @@ def sensitivities_table(found: Iterable[Sensitivity]) -> Table:
 
 
 def measure() -> Measured:
-    found = analyse({plant: Settings(plant) for plant in PLANTS})
+    found = analyse({plant: resolve(plant) for plant in PLANTS})
     important = most_important(found.sensitivities, MOST)
     ordered = [each for name in important for each in found.sensitivities if each.parameter == name]
     loops = {at.plant: (at.loop, at.margins) for at in found.at if at.speed == SPEEDS[1]}
@@ -177,10 +177,10 @@ SENSITIVE = "controller.k_d"
 
 def again() -> dict[str, Table]:
     parameters = {PLANT: {}}
-    point, settings = point_of(PLANT, OURS, {}), {PLANT: Settings(PLANT)}
+    point, loops = point_of(PLANT, OURS, {}), {PLANT: resolve(PLANT)}
     value = varied(PLANT, OURS, {})[SENSITIVE]
     runs = [Run(PLANT, "tipin15", SENSITIVE, factor * value) for factor in FACTORS]
-    (nominal, estimate), small, large = (run_of(run, settings) for run in (Run(PLANT, "tipin15"), *runs))
+    (nominal, estimate), small, large = (run_of(run, loops) for run in (Run(PLANT, "tipin15"), *runs))
     (soft,) = swept(point, SWEEP._replace(values=SWEEP.values[:1]))
     return {
         "margins": margins_table([linear_part(Part(PLANT, f"{SPEEDS[1]:g}"), OURS, parameters)]),

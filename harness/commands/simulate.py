@@ -24,7 +24,8 @@ from .arguments import option
 from .manoeuvres import Chosen, Listing, manoeuvre
 from .options import Figures, expert, output, record, seconds
 from .printing import JsonPrinting
-from .settings import caption, settings
+from .settings import caption
+from .settings import resolved as resolved_of
 from .signals_run import OneRun, signals_job, write_frames
 
 
@@ -43,10 +44,10 @@ class Arguments(Listing, OneRun, Figures, JsonPrinting):
 
 def run(args: Arguments) -> int:
     options = _options_of_figure(args, args.manoeuvre.first)
-    given = settings(args, args.plant, args.controller).replace(
+    resolved = resolved_of(args, args.plant, args.controller).replace(
         control=args.control == "on", step_size=args.step, scheme=Scheme(args.scheme)
     )
-    chosen = args.manoeuvre.for_car(given)
+    given, chosen = resolved.settings, args.manoeuvre.with_torque(resolved.T_max)
     manoeuvre = chosen.first
     # here and not above: mistakes and help are answered without them
     from fmuloop.experiment import require_steps
@@ -62,23 +63,22 @@ def run(args: Arguments) -> int:
 
     require_steps(manoeuvre.duration, args.step)
     same = {"manoeuvre": manoeuvre.name, "step_size": args.step, "scheme": args.scheme} | args.manoeuvre.digests
-    with signals_job(args, given, manoeuvre, same, args.manoeuvre.files.values()) as (made, stem):
-        fitted = made.fits[given.plant_name]
-        require_possible(*chosen, made.fits, {given.plant_name: given})
+    with signals_job(args, resolved, manoeuvre, same, args.manoeuvre.files.values()) as (made, stem):
+        require_possible(*chosen, [resolved])
         args.say(f"{manoeuvre.name} on {given.plant_name}, {given.build} FMUs, damping {args.control}")
-        results = simulate(manoeuvre, given)
+        results = simulate(manoeuvre, resolved)
         made.begin()
         made.found({given.plant_name: results})
         made.wrote(write_signals(results, stem, args.format))
         if args.frames:
-            made.wrote(*write_frames(fitted, given, results, stem, args.frames))
+            made.wrote(*write_frames(resolved, results, stem, args.frames))
         if args.plot:
             from ..views.run_figure import plot_run
 
             title = f"{given.plant_name}, {manoeuvre.description}, damping {args.control}"
             made.wrote(*plot_run(results, manoeuvre, title, stem, options))
         if given.scheme is Scheme.PROPAGATED:
-            args.say(described(transfers(fitted.system, fitted.interfaces)))
+            args.say(described(transfers(resolved.fit.system, resolved.fit.interfaces)))
         try:
             metrics = evaluate(results, manoeuvre)
         except ValueError as reason:  # the steps do not fit into the samples of the controller

@@ -19,7 +19,7 @@ from .arguments import option
 from .jobs import distinguishing, job
 from .options import Loop, OurController, Replacing, controller, output, output_folder, plant, record
 from .printing import Printing
-from .settings import settings
+from .settings import resolved as resolved_of
 
 
 @record
@@ -138,12 +138,12 @@ class Record(Loop, Replacing, Printing):
 def run_record(args: Record) -> int:
     if args.controller not in PLACES["controller"]:
         raise UserError(f"there is no C of {args.controller}; {nearest(args.controller, PLACES['controller'])}")
-    given = settings(args, args.plant, args.controller)
+    given = resolved_of(args, args.plant, args.controller)
     # here and not above: mistakes and help are answered without them
     from ..exchange.target.record import NUMBERS, announce, record, write
 
-    plant, numbers = given.plant_name, args.output / NUMBERS
-    with job(args, args.output / "target.json", distinguishing(given), {plant: given}, [numbers]) as made:
+    plant, numbers = given.settings.plant_name, args.output / NUMBERS
+    with job(args, args.output / "target.json", distinguishing(given), {plant: given.fit}, [numbers]) as made:
         found = record(given)
         made.begin()
         made.wrote(*write(found, args.output))

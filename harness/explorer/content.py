@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 
 from driverecords.drive import Drive
-from fmuloop.wiring import Fit, fit
+from fmuloop.wiring import Fit
 from toolground.atomic_files import complete
 from toolground.errors import UserError
 from toolground.written_numbers import REAL
 
 from ...fmus.building.one_car import DEFAULT_CAR, with_estimates
-from ..loop.built_fmus import frequency_of_plant
 from ..loop.parameter_words import FORMS, WORDS
 from ..loop.places import PARAMETERS, PLACES, STEP_SIZE, T_S
-from ..loop.settings import Settings, loop
+from ..loop.resolved import ResolvedLoop, frequency_of_plant
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.drivable import require_road
 from ..manoeuvres.for_car import share_of
@@ -58,8 +57,8 @@ FREE: Mapping[str, Any] = {
 MOST = 150.0
 """N.m up and down to which a demand is drawn by hand with the default car."""
 
-Given = Mapping[tuple[str, str], Settings]
-"""The settings of the loops by the names of plant and controller."""
+Given = Mapping[tuple[str, str], ResolvedLoop]
+"""The loops by the names of plant and controller."""
 
 
 def content(
@@ -84,14 +83,16 @@ def content(
     """
     if recording is not None and recording.name in manoeuvres:
         raise UserError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
-    if mapped := next((each for each in given.values() if each.mapping), None):
-        raise UserError(f"--map {'='.join(next(iter(mapped.mapping.items())))}: a page has the names of the loop")
-    fits = {key: fit(loop(settings)) for key, settings in given.items()}
+    if mapped := next((each.settings.mapping for each in given.values() if each.settings.mapping), None):
+        raise UserError(f"--map {'='.join(next(iter(mapped.items())))}: a page has the names of the loop")
+    fits = {key: each.fit for key, each in given.items()}
     car = with_estimates(of_car or _built_for(fits.values()))
     plants, controllers = (list(dict.fromkeys(key[k] for key in given)) for k in (0, 1))
     loops = loops_of({named(*key): fitted for key, fitted in fits.items()}, _are_ours(given))
     first = [fits[plant, controllers[0]] for plant in plants]
-    start = {name: value for plant in plants for name, value in given[plant, controllers[0]].parameters.items()}
+    start = {
+        name: value for plant in plants for name, value in given[plant, controllers[0]].settings.parameters.items()
+    }
     started = {port.name for port in PARAMETERS} | {f"plant.{name}" for m in manoeuvres.values() for name in m.road}
     turned = {"gains": knobs(GAINS, first, start), "car": knobs(CAR, first, start), "road": knobs(ROAD, first, start)}
     return {
@@ -102,7 +103,7 @@ def content(
         "plants": plants,
         "ours": controllers[0],
         "others": dict(zip(controllers[1:], cycle(BESIDE), strict=False)),
-        "base": {named(*key): _base(settings, fits[key], loops) for key, settings in given.items()},
+        "base": {named(*key): _base(each, loops) for key, each in given.items()},
         "manoeuvres": _recorded(recording, given, controllers[0], plants)
         | {name: _shown(each, plants, first) for name, each in manoeuvres.items()},
         **_by_hand(share_of(T_max)),
@@ -110,7 +111,12 @@ def content(
         "sport": SPORT,
         "comfort": COMFORT,
         "follow": following(car, frequency_of_plant(next(iter(given.values())))),
-        "set": {name: value for each in given.values() for name, value in each.parameters.items() if name in started},
+        "set": {
+            name: value
+            for each in given.values()
+            for name, value in each.settings.parameters.items()
+            if name in started
+        },
         "words": {**WORDS, **FORMS, "real": REAL.pattern},
         "panels": [
             {"label": label, "curves": [each._asdict() for each in signals]} for label, signals in PANELS.items()
@@ -160,11 +166,12 @@ def write_page(data: Mapping[str, Any], path: Path) -> None:
 
 
 def _are_ours(given: Given) -> bool:
-    return all(str(block) in PLACES[place] for each in given.values() for place, block in each.blocks.items())
+    return all(each.system.own == PLACES.keys() for each in given.values())
 
 
-def _base(settings: Settings, fitted: Fit, loops: Mapping[str, Any]) -> dict[str, float]:
+def _base(resolved: ResolvedLoop, loops: Mapping[str, Any]) -> dict[str, float]:
     """`instance.name` -> value that a run has and the module's FMU does not start with."""
+    settings, fitted = resolved.settings, resolved.fit
     found = {f"{place}.seed": float(settings.seed) for place in ("motor", "can")}
     for instance, interface in fitted.interfaces.items():
         declared = loops["fmus"][interface.identifier]["parameters"]
@@ -205,9 +212,9 @@ def _recorded(recording: Drive | None, given: Given, ours: str, plants: list[str
     duration = float(np.ptp(recording.time))
     on_plants = {}
     for plant in plants:
-        settings = given[plant, ours]
-        load, T_max = car_of(settings)
-        on_plants[plant] = manoeuvre_data(followed(Track.of(recording, T_max), load, settings)[0])
+        resolved = given[plant, ours]
+        load, T_max = car_of(resolved)
+        on_plants[plant] = manoeuvre_data(followed(Track.of(recording, T_max), load, resolved)[0])
     return {
         recording.name: {
             "description": f"recorded drive of {duration:.0f} s",

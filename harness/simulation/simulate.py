@@ -15,16 +15,15 @@ from fmuloop.errors import RunEnded, SimulationError, WiringError
 from fmuloop.experiment import Experiment, Source, require_steps
 from fmuloop.results import Results
 from fmuloop.runs import run
-from fmuloop.system import Port, System
-from fmuloop.wiring import fit
+from fmuloop.system import Port
+from fmuloop.wiring import Fit
 from toolground.collected_warnings import warn_once
 
 from ..loop.arguments import A_MANOEUVRE
-from ..loop.built_fmus import frequency_of_plant, require_there
 from ..loop.parameter_words import said
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
-from ..loop.settings import Changes, Settings, own_frequency, running
-from ..loop.settings import settings as settings_of
+from ..loop.resolved import ResolvedLoop, as_given
+from ..loop.settings import Changes, Settings
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal
@@ -40,7 +39,7 @@ MOSTLY = 0.5
 
 
 def simulate(
-    manoeuvre: Manoeuvre, settings: Settings | NameOrFile | None = None, **changes: Unpack[Changes]
+    manoeuvre: Manoeuvre, settings: ResolvedLoop | Settings | NameOrFile | None = None, **changes: Unpack[Changes]
 ) -> Results:
     """Drives the closed loop through a manoeuvre.
 
@@ -51,7 +50,7 @@ def simulate(
         results["plant.T_gear"]  # in N.m, a sample for each of results["time"]
 
     Args:
-        settings: of the run, or only the name or file of its plant; by default those of `Settings()`.
+        settings: of the run, or its loop, or only the name or file of its plant; by default those of `Settings()`.
         changes: fields of the settings that are to be others: plant, controller, motor, can, control, parameters,
             frequency, step_size, scheme, seed, folder, build, mapping, limits, tolerance.
 
@@ -67,12 +66,12 @@ def simulate(
             crashed or hung.
     """
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
-    made = running(settings_of(settings, **changes))
+    resolved = as_given(settings, **changes)
+    made = resolved.runs
     given = _checked(start(manoeuvre, made.seed) | dict(made.parameters))
     require_steps(manoeuvre.duration, made.step_size)
     _warn(manoeuvre, given, made.step_size)
-    system = require_there(made)
-    inputs, offered = signals(manoeuvre, made.control, made.step_size), _offered(manoeuvre, system)
+    inputs, offered = signals(manoeuvre, made.control, made.step_size), _offered(manoeuvre, resolved.fit)
     experiment = Experiment(
         duration=manoeuvre.duration,
         step_size=made.step_size,
@@ -83,7 +82,7 @@ def simulate(
         label=manoeuvre.name,
     )
     try:
-        results = run(system, experiment)
+        results = run(resolved.fit, experiment)
     except SimulationError as refusal:
         if {"plant.mu", "plant.g_muL", "plant.g_muR"}.isdisjoint(made.parameters) or "omega_wheel_" not in str(refusal):
             raise
@@ -96,16 +95,15 @@ def simulate(
             raise RunEnded(f"{results.ended}: there is nothing to evaluate")
         damping = f"with {made.controller_name}" if made.control else "without damping"
         warn_once(f"{results.ended} of {manoeuvre.duration:g} s, in {manoeuvre.name} {damping}: it has no metrics")
-    told = {name.partition(".")[2]: value for name, value in given.items() if name.startswith("controller.")}
-    results.frequency = made.frequency or own_frequency(told) or frequency_of_plant(made)
+    results.frequency = resolved.frequency
     if made.control:
-        _warn_of_fallback(results, system, f"{manoeuvre.name} on {made.plant_name}")
+        _warn_of_fallback(results, resolved.fit, f"{manoeuvre.name} on {made.plant_name}")
     return results
 
 
-def _warn_of_fallback(results: Results, system: System, run: str) -> None:
+def _warn_of_fallback(results: Results, fitted: Fit, run: str) -> None:
     """Says that the control let go for most of a run, and for which cause, if the controller tells."""
-    variables = fit(system).interfaces["controller"].variables
+    variables = fitted.interfaces["controller"].variables
     types = (variables[name].declaredType for name in ("status", "cause") if name in variables)
     items = [[(int(item.value or 0), str(item.name)) for item in of.items or ()] for of in types if of]
     fallback = [number for number, word in items[0] if word == "fallback"] if len(items) > 1 else []
@@ -153,11 +151,10 @@ def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) 
     return MappingProxyType(given | ahead)
 
 
-def _offered(manoeuvre: Manoeuvre, system: System) -> dict[str, Source]:
+def _offered(manoeuvre: Manoeuvre, fitted: Fit) -> dict[str, Source]:
     """What a bus tells beside, where the controller has an input for it and no block of the loop tells it."""
     if not manoeuvre.offered:
         return {}
-    fitted = fit(system)
     taken = {connection.target for connection in fitted.system.connections}
     has = fitted.interfaces["controller"].variables
     given = {f"controller.{name}": signal for name, signal in manoeuvre.offered.items() if name in has}

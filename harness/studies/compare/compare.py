@@ -14,7 +14,7 @@ from fmuloop.results import Results
 from toolground.errors import UserError
 
 from ...loop.places import by_name
-from ...loop.settings import Settings
+from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import at_samples, evaluate
@@ -62,8 +62,8 @@ class Case(NamedTuple):
         return f"{self.plant_name}_{self.manoeuvre}_{self.controller_name if self.control else 'off'}"
 
 
-Loops = Mapping[tuple[str, str], Settings]
-"""The settings of the loops by plant and controller of the cases."""
+Loops = Mapping[tuple[str, str], ResolvedLoop]
+"""The loops by plant and controller of the cases."""
 
 
 class Outcome(NamedTuple):

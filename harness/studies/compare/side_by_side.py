@@ -10,9 +10,9 @@ from fmuloop.many_runs import run_many
 from toolground.errors import UserError
 
 from ...loop.arguments import BLOCKS
-from ...loop.built_fmus import require_fitting
 from ...loop.mapped_names import mappings
 from ...loop.places import PLACES, PLANTS, NameOrFile
+from ...loop.resolved import resolve
 from ...loop.settings import RunChanges, Settings
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -61,9 +61,8 @@ def compare(
     ]
     common, todo = Settings().replace(**changes), cases(each[0], list(by_name), each[1])
     mapped = mappings(common.mapping, each[0], each[1], common.limits)
-    made = {(p, c): common.replace(plant=p, controller=c, mapping=own) for (p, c), own in mapped.items()}
-    require_fitting(made.values())
-    loops = loops_of(made)
+    resolved = {(p, c): resolve(common, plant=p, controller=c, mapping=own) for (p, c), own in mapped.items()}
+    loops = loops_of(resolved)
     one = partial(_metrics, manoeuvres=by_name, loops=loops)
     return dict(zip(todo, run_many(one, todo, label="comparing"), strict=True))
 

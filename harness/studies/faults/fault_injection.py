@@ -17,11 +17,10 @@ from fmuloop.wiring import Fit, fit
 
 from ...loop.built_fmus import warn_of_stale
 from ...loop.places import by_name
-from ...loop.settings import Settings, loop, running
+from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.parts import Sum
-from ...manoeuvres.road_load import torque_limit
 from ...manoeuvres.signals import lines
 from ...metrics.evaluate import at_samples
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
@@ -90,20 +89,20 @@ class FaultRunner:
         digests: of the FMUs.
     """
 
-    def __init__(self, injector: Path, settings: Mapping[str, Settings]) -> None:
+    def __init__(self, injector: Path, loops: Mapping[str, ResolvedLoop]) -> None:
         """
         Args:
             injector: FMU of SignalFaults.
-            settings: of the loop with each plant.
+            loops: with each plant.
 
         Raises:
             UserError: two plants have the same name, by which the cases are distinguished.
         """
-        by_name(settings, "plant")
-        self.plants = tuple(settings)
+        by_name(loops, "plant")
+        self.plants = tuple(loops)
         self._injector = injector.absolute()
-        self._settings = {plant: anywhere(of_plant) for plant, of_plant in settings.items()}
-        self.digests = digests(map(self._system, settings))
+        self._loops = {plant: anywhere(resolved) for plant, resolved in loops.items()}
+        self.digests = digests(map(self._system, loops))
         self._made: dict[Any, np.ndarray] = {}
         self._fitted: dict[str, Fit] = {}
 
@@ -126,15 +125,12 @@ class FaultRunner:
 
     def limits(self, plant: str) -> Limits:
         """As the parameters of the controller say."""
-        controller = self._fit(plant).interfaces["controller"]
-        given = self._settings[plant].parameters
+        resolved = self._loops[plant]
 
         def value(name: str) -> float:
-            variable = controller.variables.get(name)
-            start = float(variable.start) if variable and variable.start else np.inf
-            return float(given.get(f"controller.{name}", start))
+            return float(resolved.value(f"controller.{name}", np.inf))
 
-        share = share_of(self._T_max(plant))
+        share = share_of(resolved.T_max)
         return Limits(value("T_max"), value("T_add_max"), value("T_take_max"), value("omega_max"), share)
 
     def without_status(self, plant: str) -> str | None:
@@ -159,25 +155,21 @@ class FaultRunner:
         faults: Sequence[Fault] = (),
         control: bool = True,
     ) -> np.ndarray:
-        manoeuvre = for_car(_with(on_ice, SITUATIONS[situation].manoeuvre), self._T_max(plant))
+        manoeuvre = for_car(_with(on_ice, SITUATIONS[situation].manoeuvre), self._loops[plant].T_max)
         road = {**manoeuvre.road, "mu": ICE} if on_ice else manoeuvre.road
         parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise)
-        settings = running(self._settings[plant].replace(control=control))
-        parameters |= dict(settings.parameters) | _parameters(faults, noise)
+        resolved = self._loops[plant].replace(control=control)
+        parameters |= dict(resolved.runs.parameters) | _parameters(faults, noise)
         inputs = dict(signals(manoeuvre, control))
         for fault in faults:
             if fault.kind.number == SWITCHED_OFF:
                 inputs["controller.enable"] = partial(np.less_equal, fault.end)
         given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
-        system = with_faults(loop(settings), self._injector)
+        system = with_faults(resolved.system, self._injector)
         results = run(system, Experiment(manoeuvre.duration, **given))
         if results.ended:
             raise RunEnded(f"{results.ended}: there is nothing to judge")
         return _completed(at_samples(results))
-
-    def _T_max(self, plant: str) -> float:
-        """The largest torque of the motor in N.m; inf where its FMU does not say."""
-        return torque_limit(self._fit(plant).interfaces["motor"], self._settings[plant].parameters)
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:
@@ -186,7 +178,7 @@ class FaultRunner:
         return self._fitted[plant]
 
     def _system(self, plant: str) -> System:
-        return with_faults(loop(self._settings[plant]), self._injector)
+        return with_faults(self._loops[plant].system, self._injector)
 
 
 def _completed(run: np.ndarray) -> np.ndarray:

@@ -9,12 +9,11 @@ import numpy as np
 
 from fmuloop.errors import RunEnded, SimulationError, UnpackingError
 from fmuloop.results import Results
-from fmuloop.wiring import fit
 from toolground.collected_warnings import warn_once
 from toolground.plain_text import plain
 
 from ...design.uncertainty_box import changed
-from ...loop.settings import Settings, loop
+from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -24,20 +23,20 @@ from ...simulation.simulate import simulate
 from .draws import draw
 from .outcome import METRICS, PEAK, Case, Outcome
 
-Given = Mapping[tuple[str, str], Settings]
-"""The settings of the loops by the names of plant and controller."""
+Given = Mapping[tuple[str, str], ResolvedLoop]
+"""The loops by the names of plant and controller."""
 
 
 class Loop(NamedTuple):
     """A plant with a controller.
 
     Attributes:
-        settings: of its runs, with absolute paths, so that any process can make them.
+        resolved: with absolute paths, so that any process can make its runs.
         blocks: the parameters of each block by its place, as they are without a deviation.
         digests: of the FMUs.
     """
 
-    settings: Settings
+    resolved: ResolvedLoop
     blocks: Mapping[str, Mapping[str, float]]
     digests: Mapping[Path, str]
 
@@ -52,7 +51,7 @@ class CaseRunner:
 
     def __init__(self, given: Given, seed: int) -> None:
         self.seed = seed
-        self.loops = {key: _loop(settings) for key, settings in given.items()}
+        self.loops = {key: _loop(resolved) for key, resolved in given.items()}
         for (plant, _), one in self.loops.items():
             if not any(name.startswith("plant.") for name in changed(one.blocks, draw(1, seed).deviation)):
                 warn_once(f"{plant} has no parameter that is drawn: all cars are the same one, with other sensors")
@@ -69,8 +68,8 @@ class CaseRunner:
         """
         one, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
         require_same_fmus(one.digests)
-        settings = one.settings.with_parameters(changed(one.blocks, drawn.deviation))
-        return simulate(self.manoeuvre(case), settings, control=control, seed=drawn.noise)
+        resolved = one.resolved.with_parameters(changed(one.blocks, drawn.deviation))
+        return simulate(self.manoeuvre(case), resolved, control=control, seed=drawn.noise)
 
     def outcome(self, case: Case) -> Outcome:
         """What came of a case; one that an FMU ends has no metrics.
@@ -103,6 +102,6 @@ class CaseRunner:
         return self.loops[case.plant, case.controller].blocks["motor"].get("T_max", np.inf)
 
 
-def _loop(settings: Settings) -> Loop:
-    system = loop(settings)
-    return Loop(anywhere(settings), fit(system).parameters(settings.parameters), digests([system]))
+def _loop(resolved: ResolvedLoop) -> Loop:
+    blocks = resolved.fit.parameters(resolved.settings.parameters)
+    return Loop(anywhere(resolved), blocks, digests([resolved.system]))
