@@ -24,6 +24,15 @@ from tests.fmus.native.any_build import *  # noqa: F403
 from tests.fmus.native.test_rates import (  # noqa: F401
     ramp,
     rates_of,
+    test_a_derivative_that_is_no_number_is_refused_and_not_given_out,
+    test_a_ramp_in_one_step_is_that_of_many_small_stairs,
+    test_a_ramp_may_end_at_the_bound,
+    test_a_ramp_out_of_the_range_is_refused_and_nothing_moves,
+    test_a_rate_of_an_output_that_is_no_number_is_refused,
+    test_after_initialization_inputs_and_states_can_be_known,
+    test_directional_derivatives_are_differences,
+    test_during_initialization_parameters_can_be_known_too,
+    test_rates_of_outputs_are_their_differences_over_a_short_time,
 )
 
 every_fmu = together("name", FMUS)

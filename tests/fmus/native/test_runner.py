@@ -18,6 +18,12 @@ from tests.models.block.test_runner import (  # noqa: F401
     Counter,
     Number,
     counting,
+    test_a_long_step_makes_all_ticks_in_it_with_the_inputs_held,
+    test_a_tick_takes_the_inputs_of_the_step_that_begins_there_and_shows_one_sample_later,
+    test_a_tick_within_a_thousandth_of_a_sample_before_the_end_of_a_step_is_at_it,
+    test_a_tick_within_a_thousandth_of_a_sample_behind_the_end_of_a_step_is_at_it,
+    test_the_first_tick_is_made_in_the_first_step_with_its_inputs,
+    test_ticks_do_not_depend_on_the_steps,
 )
 
 TICK = """
