@@ -24,6 +24,7 @@ from typing import Any
 
 from toolground.plain_text import quoted
 
+from ..loop import roles
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
 from .arguments import option
 from .options import amount, counted, finite, output, record, seconds
@@ -87,6 +88,6 @@ def run(args: Arguments) -> int:
         made.wrote(write_signals(recorded, stem, args.format))
         if args.frames:
             made.wrote(*write_frames(resolved, results, stem, args.frames))
-        v, T_gear = 3.6 * results["plant.v"], abs(results["plant.T_gear"]).max()
+        v, T_gear = 3.6 * results[roles.BODY_SPEED], abs(results[roles.GEAR_TORQUE]).max()
         args.say(f"speed {v.min():.1f} to {v.max():.1f} km/h, gear torque up to {T_gear:.0f} N.m")
     return 0

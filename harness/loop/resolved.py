@@ -18,6 +18,7 @@ from toolground.collected_warnings import warn_once
 from toolground.errors import UserError
 from toolground.unit_conversion import factor
 
+from . import roles
 from .built_fmus import built_together, require_there
 from .parameter_words import said
 from .places import PLACES, PLANTS, ROAD_LOAD, NameOrFile
@@ -68,7 +69,7 @@ class ResolvedLoop:
     @property
     def T_max(self) -> float:
         """Largest torque of the motor in N.m; inf: its FMU does not tell."""
-        return self.value("motor.T_max", inf)
+        return self.value(roles.LARGEST_TORQUE, inf)
 
     def value(self, name: str, otherwise: float) -> float:
         """The number of a parameter `instance.name`, as it is set, or as its FMU starts if that tells."""

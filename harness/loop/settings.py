@@ -15,6 +15,7 @@ from fmuloop.limits import USUAL_LIMITS, Limits
 from fmuloop.system import Scheme, System
 from toolground.known_names import nearest
 
+from . import roles
 from .arguments import ARGUMENTS, require_arguments
 from .places import (
     BUILD,
@@ -210,7 +211,7 @@ def running(made: Settings) -> Settings:
     path = Path(made.controller)
     state = path.stat() if path.is_file() else None
     written = state and (state.st_mtime_ns, state.st_size)
-    if _has(path, made.mapping.get("controller.enable", "enable"), made.limits, written):
+    if _has(path, made.mapping.get(roles.ENABLE, "enable"), made.limits, written):
         return made
     others = {
         name: {key: value for key, value in getattr(made, name).items() if not key.startswith("controller.")}

@@ -5,13 +5,14 @@ from dataclasses import replace
 from math import inf, isinf
 
 from ...fmus.names import T_MAX
+from ..loop import roles
 from .manoeuvre import Manoeuvre
 from .signals import FlatSine, Held, Lines, Signal
 
 
 def given_torque(parameters: Mapping[str, float]) -> float:
     """Largest torque of the motor in N.m among parameters of a loop; inf: it is not among them."""
-    return parameters.get("motor.T_max", inf)
+    return parameters.get(roles.LARGEST_TORQUE, inf)
 
 
 def share_of(T_max: float) -> float:

@@ -14,6 +14,7 @@ from fmuloop.interface import Interface
 from fmuloop.wiring import out_of_bounds, require
 from toolground.collected_warnings import warn_once
 
+from ..loop import roles
 from ..loop.places import T_S
 from ..loop.resolved import ResolvedLoop
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -23,16 +24,16 @@ from ..manoeuvres.speed_following import SIN_MAX
 from ..metrics.evaluate import at_samples
 from .simulate import start
 
-MEASURED_WHEELS = "plant.T_rim"
+MEASURED_WHEELS = roles.RIM_TORQUE
 """What measurement wheels show; a drive of a plant that has no such output is recorded without."""
 
 RECORDED = {
-    "omega_1": "motor.omega_1_meas",
-    "T_mot": "motor.T_mot_est",
-    "T_ref": "controller.T_ref",
-    "omega_wheel": "can.omega_2_can",
-    "valid": "can.valid",
-    "counter": "can.counter",
+    "omega_1": roles.MEASURED_MOTOR_SPEED,
+    "T_mot": roles.MOTOR_TORQUE_ESTIMATE,
+    "T_ref": roles.REFERENCE_TORQUE,
+    "omega_wheel": roles.BUS_WHEEL_SPEED,
+    "valid": roles.BUS_VALID,
+    "counter": roles.BUS_COUNTER,
     "T_wheel": MEASURED_WHEELS,
 }
 """The quantities of a test drive beside the time, and the output `instance.variable` from which each is recorded."""

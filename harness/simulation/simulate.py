@@ -19,6 +19,7 @@ from fmuloop.system import Port
 from fmuloop.wiring import Fit
 from toolground.collected_warnings import warn_once
 
+from ..loop import roles
 from ..loop.arguments import A_MANOEUVRE
 from ..loop.parameter_words import said
 from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
@@ -107,7 +108,7 @@ def _warn_of_fallback(results: Results, fitted: Fit, run: str) -> None:
     types = (variables[name].declaredType for name in ("status", "cause") if name in variables)
     items = [[(int(item.value or 0), str(item.name)) for item in of.items or ()] for of in types if of]
     fallback = [number for number, word in items[0] if word == "fallback"] if len(items) > 1 else []
-    cause = results["controller.cause"][np.isin(results["controller.status"], fallback)].astype(int) if fallback else []
+    cause = results[roles.CAUSE][np.isin(results[roles.STATUS], fallback)].astype(int) if fallback else []
     if len(cause) > MOSTLY * len(results):
         why = dict(items[1]).get(int(np.bincount(cause).argmax()))
         share = 100.0 * len(cause) / len(results)
@@ -116,8 +117,8 @@ def _warn_of_fallback(results: Results, fitted: Fit, run: str) -> None:
 
 def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:
     """Names what makes a run that is hardly meant."""
-    if given["plant.v_0"] > 0.0 and given["plant.T_0"] != manoeuvre.T_0:
-        LOG.warning(said("torque", T_0=float(given["plant.T_0"]), demand=float(manoeuvre.T_0)))
+    if given[roles.FIRST_SPEED] > 0.0 and given[roles.FIRST_TORQUE] != manoeuvre.T_0:
+        LOG.warning(said("torque", T_0=float(given[roles.FIRST_TORQUE]), demand=float(manoeuvre.T_0)))
     if step_size > T_S * (1.0 + 1e-9):
         warn_once(
             f"the communication step of {step_size * 1e3:g} ms is longer than the {T_S * 1e3:g} ms between samples of "

@@ -11,6 +11,7 @@ from fmublocks.target.image import build_on_target
 from fmublocks.target.link import Answer, Link
 
 from ....fmus.catalogue import CONTROLLERS
+from ...loop import roles
 from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.catalogue import USUAL_MANOEUVRES
 from ...manoeuvres.for_car import for_car
@@ -122,10 +123,10 @@ def in_loop(programs: Programs, resolved: ResolvedLoop, names: Sequence[str]) ->
             here = at_samples(simulate(manoeuvre, resolved))
             off_line = responses(programs.single(), fed(manoeuvre, there, resolved.system, names))
             T_ref = np.array([answer.outputs[0] for answer in off_line])
-            distance, twist = (np.abs(there[name] - here[name]) for name in ("controller.T_ref", "plant.T_gear"))
+            distance, twist = (np.abs(there[name] - here[name]) for name in (roles.REFERENCE_TORQUE, roles.GEAR_TORQUE))
             yield InLoop(
                 manoeuvre.name,
-                differing=int(np.count_nonzero(T_ref != there["controller.T_ref"])),
+                differing=int(np.count_nonzero(T_ref != there[roles.REFERENCE_TORQUE])),
                 T_ref=float(np.max(distance)),
                 T_gear=float(np.max(twist)),
                 rms=float(np.sqrt(np.mean(distance**2))),

@@ -15,6 +15,7 @@ from fmuloop.results import Results
 from toolground.errors import UserError
 from toolground.progress import part, progress
 
+from ...loop import roles
 from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.road_load import RoadLoad, Track
@@ -31,15 +32,15 @@ from ...views.signals_file import write_signals
 
 KEPT = [
     "time",
-    "controller.T_driver",
-    "plant.T_brake",
-    "plant.slope",
-    "controller.T_ref",
-    "plant.omega_1",
-    "plant.omega_2",
-    "plant.T_gear",
-    "plant.v",
-    "plant.a_body",
+    roles.DEMAND,
+    roles.BRAKE_TORQUE,
+    roles.SLOPE,
+    roles.REFERENCE_TORQUE,
+    roles.MOTOR_SPEED,
+    roles.WHEEL_SPEED,
+    roles.GEAR_TORQUE,
+    roles.BODY_SPEED,
+    roles.BODY_ACCELERATION,
 ]
 """Columns that are kept of a ride; a trip of half an hour with all of them would not fit in memory."""
 
@@ -85,7 +86,7 @@ def signals_of(manoeuvre: Manoeuvre, resolved: ResolvedLoop) -> Results:
 
 def speed_error(signals: np.ndarray, track: Track) -> float:
     """Rms of the simulated less the recorded speed in m/s."""
-    return float(np.sqrt(np.mean((signals["plant.v"] - np.interp(signals["time"], track.t, track.v)) ** 2)))
+    return float(np.sqrt(np.mean((signals[roles.BODY_SPEED] - np.interp(signals["time"], track.t, track.v)) ** 2)))
 
 
 def ride_of(controller: str, signals: Results, manoeuvre: Manoeuvre, track: Track) -> Ride:
@@ -93,7 +94,7 @@ def ride_of(controller: str, signals: Results, manoeuvre: Manoeuvre, track: Trac
     metrics = evaluate(signals, manoeuvre)
     computed = {
         "gear_torque_rms": lambda: given(metrics, "gear_torque_rms"),
-        "gear_damage": lambda: damage(signals["plant.T_gear"]),
+        "gear_damage": lambda: damage(signals[roles.GEAR_TORQUE]),
         "jerk_rms": lambda: given(metrics, "jerk_rms"),
         "speed_error_rms": lambda: speed_error(signals, track),
     }
@@ -113,7 +114,7 @@ def followed(
                 signals = signals_of(manoeuvre, resolved.replace(control=False))
             if signals.ended or speed_error(signals, track) <= CLOSE:
                 break
-            lacking = lacking_force(track, load, signals["time"], signals["plant.v"])
+            lacking = lacking_force(track, load, signals["time"], signals[roles.BODY_SPEED])
     return manoeuvre, signals
 
 

@@ -9,6 +9,7 @@ from driverecords.findings import Finding
 from driverecords.plausibility import not_followed
 from driverecords.source import RecordingError
 
+from ...loop import roles
 from .replay import Ride
 
 LOG = logging.getLogger(__name__)
@@ -17,7 +18,7 @@ LOG = logging.getLogger(__name__)
 def followed_speed(drive: Drive, rides: Sequence[Ride]) -> list[Finding]:
     """What the ride without damping, the first one, says against the recording; nothing if an FMU has ended it."""
     signals = rides[0].signals
-    return [] if signals.ended else not_followed(drive, signals["time"], signals["plant.v"])
+    return [] if signals.ended else not_followed(drive, signals["time"], signals[roles.BODY_SPEED])
 
 
 def tell(findings: Sequence[Finding], recording: PathLike[str] | str, strict: bool = False) -> None:

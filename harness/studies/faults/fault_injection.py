@@ -15,6 +15,7 @@ from fmuloop.runs import run
 from fmuloop.system import Connection, Port, System
 from fmuloop.wiring import Fit, fit
 
+from ...loop import roles
 from ...loop.built_fmus import warn_of_stale
 from ...loop.places import by_name
 from ...loop.resolved import ResolvedLoop
@@ -44,17 +45,17 @@ PASSES = {
 COUNTED = f"{INSTANCE}.alive_sent"
 """The counter of the frames of motor control."""
 
-STATUS, T_DAMP = "controller.status", "controller.T_damp"
+STATUS, T_DAMP = roles.STATUS, roles.DAMPING_TORQUE
 
 JUDGED = (
     Port(STATUS, None),
     Port(T_DAMP, "N.m"),
-    Port("motor.omega_1_meas", "rad/s"),
-    Port("can.valid", None),
+    Port(roles.MEASURED_MOTOR_SPEED, "rad/s"),
+    Port(roles.BUS_VALID, None),
 )
 """What judges and figures read beside what every loop puts out."""
 
-KEPT = [STATUS, T_DAMP, "plant.T_gear"]
+KEPT = [STATUS, T_DAMP, roles.GEAR_TORQUE]
 """What they read of the runs without faults, of which hundreds are kept."""
 
 SLIPPERY = 1e5
@@ -163,7 +164,7 @@ class FaultRunner:
         inputs = dict(signals(manoeuvre, control))
         for fault in faults:
             if fault.kind.number == SWITCHED_OFF:
-                inputs["controller.enable"] = partial(np.less_equal, fault.end)
+                inputs[roles.ENABLE] = partial(np.less_equal, fault.end)
         given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
         system = with_faults(resolved.system, self._injector)
         results = run(system, Experiment(manoeuvre.duration, **given))
@@ -185,8 +186,8 @@ def _completed(run: np.ndarray) -> np.ndarray:
     """A run with what a controller has not told: the torque that it adds to the demand of the sample before, and a
     status that stands for none."""
     lacking = [name for name in (STATUS, T_DAMP) if name not in (run.dtype.names or ())]
-    demand = run["controller.T_driver"]
-    told = {STATUS: np.zeros(len(run)), T_DAMP: run["controller.T_ref"] - np.append(demand[:1], demand[:-1])}
+    demand = run[roles.DEMAND]
+    told = {STATUS: np.zeros(len(run)), T_DAMP: run[roles.REFERENCE_TORQUE] - np.append(demand[:1], demand[:-1])}
     return append_fields(run, lacking, [told[name] for name in lacking], usemask=False) if lacking else run
 
 

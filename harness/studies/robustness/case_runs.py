@@ -13,6 +13,7 @@ from toolground.collected_warnings import warn_once
 from toolground.plain_text import plain
 
 from ...design.uncertainty_box import changed
+from ...loop import roles
 from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...manoeuvres.for_car import for_car, share_of
@@ -86,7 +87,7 @@ class CaseRunner:
         except SimulationError as reason:
             return Outcome(case, {metric.name: nan for metric in METRICS}, plain(reason))
         metrics = evaluate(results, self.manoeuvre(case))
-        peak = float(np.abs(results["plant.T_gear"]).max()) / self._T_max(case)
+        peak = float(np.abs(results[roles.GEAR_TORQUE]).max()) / self._T_max(case)
         return Outcome(case, {m.name: peak if m is PEAK else m.of(metrics) for m in METRICS})
 
     def manoeuvre(self, case: Case) -> Manoeuvre:
