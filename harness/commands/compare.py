@@ -73,15 +73,14 @@ def run(args: Arguments) -> int:
         made.found({str(outcome.case): outcome.results for outcome in outcomes})
         title, rows = dampings(names), rows_of(outcomes)
         made.wrote(*write_tables(outcomes, args.output, title), *figures)
-        for outcome, path in zip(outcomes, signals.values(), strict=True):
-            case = outcome.case
-            _record(outcome, path, loops[case.plant, case.controller], manoeuvres[case.manoeuvre], read)
+        for case, outcome in {outcome.case: outcome for outcome in outcomes}.items():
+            _record(outcome, signals[case], loops[case.plant, case.controller], manoeuvres[case.manoeuvre], read)
         for provenance, path in made.reports():
             report(outcomes, manoeuvres, provenance, path)
         of_plants = (each.settings for each in given.values() if "plant" in each.system.own)
         builds = {settings.plant_name: settings.build for settings in of_plants}
         built = ", ".join(f"{plant} {build}" for plant, build in builds.items())
-        args.say(f"{f'FMUs: {built}; ' if built else ''}signals of {len(outcomes)} runs: {folder}")
+        args.say(f"{f'FMUs: {built}; ' if built else ''}signals of {len(signals)} runs: {folder}")
         say_unknowns(args)
         made.tell(print_runs, rows, title, runs=[each.record for each in outcomes])
     return 0

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from ..loop.topology import ONE_UNIT
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .printing import Printing
 
@@ -150,7 +151,7 @@ def distinguishing(resolved: "ResolvedLoop", manoeuvre: Manoeuvre | None = None)
     system, made = resolved.system, resolved.settings
     ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
     others = {name: path for name, path in system.instances.items() if name not in system.own}
-    own = start(manoeuvre, made.seed) if manoeuvre else {}
+    own = start(manoeuvre, made.seed, made.topology) if manoeuvre else {}
     digests = {name: digest(path) for name, path in others.items() if path.is_file()}
     return {
         "fmus": {name: str(as_built(path)) for name, path in system.instances.items()},
@@ -159,6 +160,7 @@ def distinguishing(resolved: "ResolvedLoop", manoeuvre: Manoeuvre | None = None)
         "parameters": {**own, **made.parameters},
         **({"road_load": made.road_load} if made.road_load else {}),
         **({"frequency": made.frequency} if made.frequency else {}),
+        **({"topology": made.topology.units} if made.topology != ONE_UNIT else {}),
         "seed": made.seed,
         "mapping": made.mapping,
     }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..loop.places import PLACES, PLANTS, by_name
 from ..loop.settings import Settings
+from ..loop.topology import ONE_UNIT, read_topology
 from ..views.metrics_table import DAMPINGS
 from .options import Loop
 
@@ -50,6 +51,7 @@ def _given(args: Loop, plant: str, controller: str, mapping: Mapping[str, str], 
         build=args.build,
         mapping=mapping,
         limits=args.limits,
+        topology=ONE_UNIT if args.topology is None else read_topology(args.topology),
         **run,
     )
 
@@ -72,7 +74,8 @@ def _has_gains(resolved: "ResolvedLoop") -> bool:
     from ...fmus.building.parameter_files import car_names
     from ...fmus.catalogue import FMUS
 
-    has = {variable.name for variable in resolved.fit.interfaces["controller"].of_causality("parameter")}
+    controller = resolved.fit.interfaces[resolved.settings.topology.instances("controller")[0]]
+    has = {variable.name for variable in controller.of_causality("parameter")}
     return bool(has & {*FMUS["DampingController"].block.Parameters._fields} - {*car_names()})
 
 

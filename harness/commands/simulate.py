@@ -54,9 +54,8 @@ def run(args: Arguments) -> int:
     from fmuloop.schedule import described, transfers
 
     from ..manoeuvres.drivable import require_possible
-    from ..metrics.evaluate import evaluate
     from ..simulation.simulate import simulate
-    from ..studies.compare.compare import Case, Outcome
+    from ..studies.compare.compare import Case, outcomes_of
     from ..views.signal_lines import WITHOUT
     from ..views.signals_file import write_signals
     from ..views.terminal import print_runs
@@ -75,19 +74,22 @@ def run(args: Arguments) -> int:
         if args.plot:
             from ..views.run_figure import plot_run
 
-            title = f"{given.plant_name}, {manoeuvre.description}, damping {args.control}"
-            made.wrote(*plot_run(results, manoeuvre, title, stem, options))
+            for unit, run_of_unit in given.topology.runs(results):
+                plant, end = f"{given.plant_name} {unit}".rstrip(), f"_{unit}" if unit else ""
+                title = f"{plant}, {manoeuvre.description}, damping {args.control}"
+                made.wrote(*plot_run(run_of_unit, manoeuvre, title, stem.with_name(stem.name + end), options))
         if given.scheme is Scheme.PROPAGATED:
             args.say(described(transfers(resolved.fit.system, resolved.fit.interfaces)))
+        controller = given.controller_name if given.control else WITHOUT
         try:
-            metrics = evaluate(results, manoeuvre)
+            case = Case(given.plant_name, manoeuvre.name, controller)
+            outcomes = outcomes_of(case, manoeuvre, results, given.topology)
         except ValueError as reason:  # the steps do not fit into the samples of the controller
             made.tell(print, f"no metrics: {reason}", runs=[], no_metrics=str(reason))
         else:
-            controller = given.controller_name if given.control else WITHOUT
-            outcome = Outcome(Case(given.plant_name, manoeuvre.name, controller), metrics, results)
             title = f"damping by {controller}" if given.control else WITHOUT
-            made.tell(print_runs, [outcome.row()], title, runs=[outcome.record])
+            rows = [outcome.row() for outcome in outcomes]
+            made.tell(print_runs, rows, title, runs=[outcome.record for outcome in outcomes])
     return 0
 
 

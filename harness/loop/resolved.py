@@ -62,14 +62,14 @@ class ResolvedLoop:
     def frequency(self) -> float | None:
         """At which the drive train swings, Hz: as it is set, by the parameters of the controller, or as the FMU of the
         plant tells; None: that of the default car."""
-        given = self.runs.parameters.items()
-        of_controller = {name.partition(".")[2]: value for name, value in given if name.startswith("controller.")}
+        own, given = f"{self.settings.topology.instances('controller')[0]}.", self.runs.parameters.items()
+        of_controller = {name.removeprefix(own): value for name, value in given if name.startswith(own)}
         return self.settings.frequency or own_frequency(of_controller) or frequency_of_plant(self)
 
     @property
     def T_max(self) -> float:
-        """Largest torque of the motor in N.m; inf: its FMU does not tell."""
-        return self.value(roles.LARGEST_TORQUE, inf)
+        """Largest torque of the motor of a drive unit in N.m, the smallest of all; inf: no FMU tells."""
+        return min(self.value(unit.own(roles.LARGEST_TORQUE), inf) for unit in self.settings.topology.units)
 
     def value(self, name: str, otherwise: float) -> float:
         """The number of a parameter `instance.name`, as it is set, or as its FMU starts if that tells."""
@@ -167,8 +167,9 @@ def _require_one_with_each(loops: Mapping[tuple[str, str], ResolvedLoop], assign
 
 def _taken(base: ResolvedLoop, assigned: Mapping[str, float]) -> dict[str, float]:
     """Without values of parameters that the controller does not have."""
-    known = base.fit.interfaces
-    lacking = [n for n in assigned if n.startswith("controller.") and not find(parted(n)[0], "parameter", known)[0]]
+    known, controllers = base.fit.interfaces, base.settings.topology.instances("controller")
+    of_controllers = [name for name in assigned if name.partition(".")[0] in controllers]
+    lacking = [name for name in of_controllers if not find(parted(name)[0], "parameter", known)[0]]
     return {name: value for name, value in assigned.items() if name not in lacking}
 
 
@@ -242,7 +243,7 @@ def _of_files(
     every = set().union(*names.values())
     values = of_one_car(read_files(vehicle, gains, others=every), every)
     try:
-        require_taken(gains, every, system.instances["controller"].name)
+        require_taken(gains, every, system.instances[base.settings.topology.instances("controller")[0]].name)
     except ParameterFileError as refusal:
         raise NotTaken(str(refusal)) from refusal
     meant = {name: unit for name, unit in units().items() if name in values}

@@ -8,7 +8,7 @@ import numpy as np
 from fmuloop.experiment import instants, sampled
 from fmuloop.wiring import Fit, beyond_bounds
 
-from ..loop.places import INPUTS, PARAMETERS, STEP_SIZE
+from ..loop.places import STEP_SIZE
 from ..loop.resolved import ResolvedLoop
 from .manoeuvre import Manoeuvre
 from .parts import ManoeuvreError
@@ -62,13 +62,13 @@ def require_road(manoeuvre: Manoeuvre, fitted: Fit) -> None:
 
 def _problems(manoeuvre: Manoeuvre, resolved: ResolvedLoop) -> Iterator[str]:
     time = instants(manoeuvre.duration, min(STEP_SIZE, manoeuvre.duration))
-    for port in PARAMETERS:
+    for port in resolved.settings.topology.parameters:
         if hasattr(manoeuvre, port.variable):
             value = getattr(manoeuvre, port.variable)
             if problem := beyond_bounds(resolved.fit, "parameter", port.name, value):
                 yield f"{port.variable} = {value:g} {port.unit}: {problem}"
     T_max = resolved.T_max
-    for port in INPUTS:
+    for port in resolved.settings.topology.inputs:
         if hasattr(manoeuvre, port.variable):
             values = np.broadcast_to(sampled(port.name, getattr(manoeuvre, port.variable), time), time.shape)
             for k in (values.argmin(), values.argmax()):

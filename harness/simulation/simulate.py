@@ -13,6 +13,7 @@ import numpy as np
 from fmuloop.argument_kinds import require_kind
 from fmuloop.errors import RunEnded, SimulationError, WiringError
 from fmuloop.experiment import Experiment, Source, require_steps
+from fmuloop.interface import Interface
 from fmuloop.results import Results
 from fmuloop.runs import run
 from fmuloop.system import Port
@@ -22,9 +23,10 @@ from toolground.collected_warnings import warn_once
 from ..loop import roles
 from ..loop.arguments import A_MANOEUVRE
 from ..loop.parameter_words import said
-from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
+from ..loop.places import T_S, NameOrFile
 from ..loop.resolved import ResolvedLoop, as_given
 from ..loop.settings import Changes, Settings
+from ..loop.topology import ONE_UNIT, Topology, of_unit
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal
@@ -53,7 +55,7 @@ def simulate(
     Args:
         settings: of the run, or its loop, or only the name or file of its plant; by default those of `Settings()`.
         changes: fields of the settings that are to be others: plant, controller, motor, can, control, parameters,
-            frequency, step_size, scheme, seed, folder, build, mapping, limits, tolerance.
+            frequency, step_size, scheme, seed, folder, build, mapping, limits, tolerance, topology.
 
     Returns:
         Structured array with the units of its columns: a row for each instant k * step_size, k = 0, 1, ..., with
@@ -69,10 +71,11 @@ def simulate(
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
     resolved = as_given(settings, **changes)
     made = resolved.runs
-    given = _checked(start(manoeuvre, made.seed) | dict(made.parameters))
+    given = _checked(start(manoeuvre, made.seed, made.topology) | dict(made.parameters))
     require_steps(manoeuvre.duration, made.step_size)
     _warn(manoeuvre, given, made.step_size)
-    inputs, offered = signals(manoeuvre, made.control, made.step_size), _offered(manoeuvre, resolved.fit)
+    inputs = signals(manoeuvre, made.control, made.step_size, made.topology)
+    offered = _offered(manoeuvre, resolved.fit, made.topology)
     experiment = Experiment(
         duration=manoeuvre.duration,
         step_size=made.step_size,
@@ -98,13 +101,16 @@ def simulate(
         warn_once(f"{results.ended} of {manoeuvre.duration:g} s, in {manoeuvre.name} {damping}: it has no metrics")
     results.frequency = resolved.frequency
     if made.control:
-        _warn_of_fallback(results, resolved.fit, f"{manoeuvre.name} on {made.plant_name}")
+        for unit in made.topology.units:
+            controller = resolved.fit.interfaces[unit.instance("controller")]
+            where = " ".join(filter(None, (manoeuvre.name, "on", made.plant_name, unit.name)))
+            _warn_of_fallback(of_unit(results, unit), controller, where)
     return results
 
 
-def _warn_of_fallback(results: Results, fitted: Fit, run: str) -> None:
+def _warn_of_fallback(results: Results, controller: Interface, run: str) -> None:
     """Says that the control let go for most of a run, and for which cause, if the controller tells."""
-    variables = fitted.interfaces["controller"].variables
+    variables = controller.variables
     types = (variables[name].declaredType for name in ("status", "cause") if name in variables)
     items = [[(int(item.value or 0), str(item.name)) for item in of.items or ()] for of in types if of]
     fallback = [number for number, word in items[0] if word == "fallback"] if len(items) > 1 else []
@@ -139,7 +145,9 @@ def _checked(parameters: dict[str, Any]) -> dict[str, Any]:
 
 
 @lru_cache(1)
-def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) -> Mapping[str, Source]:
+def signals(
+    manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0, topology: Topology = ONE_UNIT
+) -> Mapping[str, Source]:
     """What the loop is given from outside during a manoeuvre; runs that are given the same one are sampled once where
     they are made in lanes.
 
@@ -147,19 +155,22 @@ def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) 
     `step_size` s; it gets what they are in the middle of the step, as straight lines are on average. Held from its
     beginning, they would be late by half a step, and how a car comes to rest depends on that.
     """
-    given = {port.name: _value(port, manoeuvre, enable=control) for port in INPUTS}
+    given = {port.name: _value(port, manoeuvre, enable=control) for port in topology.inputs}
     ahead = {name: _ahead(value, 0.5 * step_size) for name, value in given.items() if name.startswith("plant.")}
     return MappingProxyType(given | ahead)
 
 
-def _offered(manoeuvre: Manoeuvre, fitted: Fit) -> dict[str, Source]:
+def _offered(manoeuvre: Manoeuvre, fitted: Fit, topology: Topology = ONE_UNIT) -> dict[str, Source]:
     """What a bus tells beside, where the controller has an input for it and no block of the loop tells it."""
     if not manoeuvre.offered:
         return {}
     taken = {connection.target for connection in fitted.system.connections}
-    has = fitted.interfaces["controller"].variables
-    given = {f"controller.{name}": signal for name, signal in manoeuvre.offered.items() if name in has}
-    return {target: signal for target, signal in given.items() if target not in taken}
+    return {
+        target: signal
+        for controller in topology.instances("controller")
+        for name, signal in manoeuvre.offered.items()
+        if name in fitted.interfaces[controller].variables and (target := f"{controller}.{name}") not in taken
+    }
 
 
 def _ahead(signal: Signal, time: float) -> Signal:
@@ -167,10 +178,10 @@ def _ahead(signal: Signal, time: float) -> Signal:
     return lambda t: signal(t + time)
 
 
-def start(manoeuvre: Manoeuvre, seed: int = 1) -> dict[str, float]:
+def start(manoeuvre: Manoeuvre, seed: int = 1, topology: Topology = ONE_UNIT) -> dict[str, float]:
     """Parameters with which the loop starts a manoeuvre."""
     road = {f"plant.{name}": value for name, value in manoeuvre.road.items()}
-    return {port.name: _value(port, manoeuvre, seed=seed) for port in PARAMETERS} | road
+    return {port.name: _value(port, manoeuvre, seed=seed) for port in topology.parameters} | road
 
 
 def _value(port: Port, manoeuvre: Manoeuvre, **settings: Any) -> Any:

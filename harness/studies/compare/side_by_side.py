@@ -43,7 +43,8 @@ def compare(
 
     Returns:
         The metrics of each run, in SI units, by (plant, manoeuvre, controller): the name or path of the plant, the name
-        of the manoeuvre, the name or path of the controller or "without damping".
+        of the manoeuvre, the name or path of the controller or "without damping". In a loop of several drive units the
+        name of one follows that of the plant.
 
     Raises:
         UserError: two plants, manoeuvres or controllers have the same name, and what `simulate` raises.
@@ -64,9 +65,10 @@ def compare(
     resolved = {(p, c): resolve(common, plant=p, controller=c, mapping=own) for (p, c), own in mapped.items()}
     loops = loops_of(resolved)
     one = partial(_metrics, manoeuvres=by_name, loops=loops)
-    return dict(zip(todo, run_many(one, todo, label="comparing"), strict=True))
+    return {case: metrics for of_case in run_many(one, todo, label="comparing") for case, metrics in of_case.items()}
 
 
-def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], loops: Loops) -> Metrics:
-    manoeuvre = manoeuvres[case.manoeuvre]
-    return evaluate(simulate(manoeuvre, loops[case.plant, case.controller]), manoeuvre)
+def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], loops: Loops) -> dict[Case, Metrics]:
+    manoeuvre, resolved = manoeuvres[case.manoeuvre], loops[case.plant, case.controller]
+    runs = resolved.settings.topology.runs(simulate(manoeuvre, resolved))
+    return {case._replace(plant=f"{case.plant} {unit}".rstrip()): evaluate(run, manoeuvre) for unit, run in runs}
