@@ -63,7 +63,7 @@ def run(args: Arguments) -> int:
     injector = made_if_missing(SIGNAL_FAULTS, args.fmus, NATIVE)
     runner = FaultRunner(injector, {str(each.settings.plant): each for each in given.values()})
     same: dict[str, Any] = {name: distinguishing(each) for name, each in given.items()}
-    tried = {name: fit(with_faults(each.system, injector)) for name, each in given.items()}
+    tried = {name: fit(with_faults(each.system, injector, each.settings.topology)) for name, each in given.items()}
     return (_all if args.case is None else _one)(args, runner, same, tried)
 
 

@@ -72,12 +72,13 @@ def run(args: Arguments) -> int:
         if args.frames:
             made.wrote(*write_frames(resolved, results, stem, args.frames))
         if args.plot:
+            from ..loop.topology import of_unit
             from ..views.run_figure import plot_run
 
-            for unit, run_of_unit in given.topology.runs(results):
-                plant, end = f"{given.plant_name} {unit}".rstrip(), f"_{unit}" if unit else ""
-                title = f"{plant}, {manoeuvre.description}, damping {args.control}"
-                made.wrote(*plot_run(run_of_unit, manoeuvre, title, stem.with_name(stem.name + end), options))
+            for unit in given.topology.units:
+                title = f"{unit.named(given.plant_name)}, {manoeuvre.description}, damping {args.control}"
+                file = stem.with_name("_".join(filter(None, (stem.name, unit.name))))
+                made.wrote(*plot_run(of_unit(results, unit), manoeuvre, title, file, options))
         if given.scheme is Scheme.PROPAGATED:
             args.say(described(transfers(resolved.fit.system, resolved.fit.interfaces)))
         controller = given.controller_name if given.control else WITHOUT

@@ -16,7 +16,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -46,6 +46,10 @@ class DriveUnit(NamedTuple):
     def instance(self, place: str) -> str:
         """What its block in a place is called."""
         return f"{place}_{self.name}" if self.name and place != BODY else place
+
+    def named(self, plant: str) -> str:
+        """Its name in tables, after that of the plant."""
+        return f"{plant} {self.name}".rstrip()
 
     def own(self, name: str) -> str:
         """What a signal `place.variable` of a loop of one drive unit is for this one."""
@@ -103,11 +107,6 @@ class Topology:
         """The blocks in a place."""
         return [instance for instance, of in self.places.items() if of == place]
 
-    def runs(self, results: Results) -> Iterator[tuple[str, Results]]:
-        """A run as each of its drive units sees it, by their names."""
-        for unit in self.units:
-            yield unit.name, of_unit(results, unit)
-
     def _connected(self, connections: Iterable[Connection]) -> tuple[Connection, ...]:
         each = (Connection(u.own(c.source), u.own(c.target), c.unit) for u in self.units for c in connections)
         return tuple(dict.fromkeys(each))
@@ -123,26 +122,26 @@ def of_unit(results: Results, unit: DriveUnit) -> Results:
     """A run with the signals of a drive unit under the names of their roles, without those of the others."""
     if unit == DriveUnit():
         return results
-    fields, places = results.dtype.fields or {}, {unit.instance(place): place for place in PLACES}
-    columns = {"time": "time"} | {role: own for role in _roles(fields, places) if (own := unit.own(role)) in fields}
+    fields: Mapping[str, Any] = results.dtype.fields or {}
+    columns = {"time": "time"} | {role: own for role in _roles(fields, unit) if (own := unit.own(role)) in fields}
     columns |= {f"{BODY}.{role}": f"{BODY}.{own}" for role, own in unit.of_plant if f"{BODY}.{own}" in fields}
-    layout = {
+    layout: Any = {
         "names": list(columns),
         "formats": [fields[own][0] for own in columns.values()],
         "offsets": [fields[own][1] for own in columns.values()],
         "itemsize": results.dtype.itemsize,
     }
-    seen = results.view(np.dtype(layout))
+    seen: Any = results.view(np.dtype(layout))
     seen.units = {role: results.units[own] for role, own in columns.items() if own in results.units}
     return seen
 
 
-def _roles(columns: Iterable[str], places: Mapping[str, str]) -> Iterator[str]:
+def _roles(columns: Iterable[str], unit: DriveUnit) -> Iterator[str]:
     """What columns of these instances are called in a loop of one drive unit, but for the unit's own of the plant."""
     for name in columns:
-        instance, _, variable = name.partition(".")
-        if instance in places:
-            yield f"{places[instance]}.{variable}"
+        place = name.partition(".")[0].removesuffix(f"_{unit.name}")
+        if name.startswith(f"{unit.instance(place)}."):
+            yield f"{place}.{name.partition('.')[2]}"
 
 
 def read_topology(path: Path) -> Topology:

@@ -103,8 +103,7 @@ def simulate(
     if made.control:
         for unit in made.topology.units:
             controller = resolved.fit.interfaces[unit.instance("controller")]
-            where = " ".join(filter(None, (manoeuvre.name, "on", made.plant_name, unit.name)))
-            _warn_of_fallback(of_unit(results, unit), controller, where)
+            _warn_of_fallback(of_unit(results, unit), controller, f"{manoeuvre.name} on {unit.named(made.plant_name)}")
     return results
 
 

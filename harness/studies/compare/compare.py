@@ -14,7 +14,7 @@ from toolground.errors import UserError
 
 from ...loop.places import by_name
 from ...loop.resolved import ResolvedLoop
-from ...loop.topology import Topology
+from ...loop.topology import DriveUnit, Topology, of_unit
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import at_samples, evaluate
@@ -67,18 +67,17 @@ Loops = Mapping[tuple[str, str], ResolvedLoop]
 
 
 class Outcome(NamedTuple):
-    """A case that was run."""
+    """A case that was run, as one of the drive units saw it."""
 
     case: Case
     metrics: Metrics
     results: Results
-    unit: str = ""
-    """The drive unit of a loop of several."""
+    unit: DriveUnit = DriveUnit()
 
     @property
     def plant_name(self) -> str:
         """In tables, with the drive unit."""
-        return f"{self.case.plant_name} {self.unit}".rstrip()
+        return self.unit.named(self.case.plant_name)
 
     def row(self, several: bool = False) -> Row:
         """Of the table; `several` controllers are in it."""
@@ -90,7 +89,7 @@ class Outcome(NamedTuple):
         """The run for files: what it was, and all metrics by their keys."""
         return {
             "plant": self.case.plant_name,
-            **({"drive_unit": self.unit} if self.unit else {}),
+            **({"drive_unit": self.unit.name} if self.unit.name else {}),
             "manoeuvre": self.case.manoeuvre,
             "control": self.case.control,
             "controller": self.case.controller_name,
@@ -134,8 +133,8 @@ def run_case(
 
 def outcomes_of(case: Case, manoeuvre: Manoeuvre, results: Results, topology: Topology) -> list[Outcome]:
     """What a run is worth, of each drive unit."""
-    runs = topology.runs(results)
-    return [Outcome(case, evaluate(of_one, manoeuvre), of_one, unit) for unit, of_one in runs]
+    runs = ((of_unit(results, unit), unit) for unit in topology.units)
+    return [Outcome(case, evaluate(run, manoeuvre), run, unit) for run, unit in runs]
 
 
 def run_cases(
@@ -175,7 +174,7 @@ def together(outcomes: Iterable[Outcome]) -> list[Together]:
     """By manoeuvre, plant and drive unit, in the order of the outcomes."""
     groups: dict[tuple[str, str, str], Together] = {}
     for outcome in outcomes:
-        key = outcome.case.plant, outcome.case.manoeuvre, outcome.unit
+        key = outcome.case.plant, outcome.case.manoeuvre, outcome.unit.name
         groups.setdefault(key, Together()).append(outcome)
     return list(groups.values())
 

@@ -14,6 +14,7 @@ from ...loop.mapped_names import mappings
 from ...loop.places import PLACES, PLANTS, NameOrFile
 from ...loop.resolved import resolve
 from ...loop.settings import RunChanges, Settings
+from ...loop.topology import of_unit
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
@@ -70,5 +71,5 @@ def compare(
 
 def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], loops: Loops) -> dict[Case, Metrics]:
     manoeuvre, resolved = manoeuvres[case.manoeuvre], loops[case.plant, case.controller]
-    runs = resolved.settings.topology.runs(simulate(manoeuvre, resolved))
-    return {case._replace(plant=f"{case.plant} {unit}".rstrip()): evaluate(run, manoeuvre) for unit, run in runs}
+    results, units = simulate(manoeuvre, resolved), resolved.settings.topology.units
+    return {case._replace(plant=unit.named(case.plant)): evaluate(of_unit(results, unit), manoeuvre) for unit in units}

@@ -19,6 +19,7 @@ from ...loop import roles
 from ...loop.built_fmus import warn_of_stale
 from ...loop.places import by_name
 from ...loop.resolved import ResolvedLoop
+from ...loop.topology import ONE_UNIT, DriveUnit, Topology, of_unit
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.parts import Sum
@@ -86,7 +87,7 @@ class FaultRunner:
     """Runs cases; runs without faults that several cases have in common are made once.
 
     Attributes:
-        plants: in their order.
+        plants: in their order, each as often as it has drive units; a case is of one unit's signals.
         digests: of the FMUs.
     """
 
@@ -100,10 +101,14 @@ class FaultRunner:
             UserError: two plants have the same name, by which the cases are distinguished.
         """
         by_name(loops, "plant")
-        self.plants = tuple(loops)
         self._injector = injector.absolute()
-        self._loops = {plant: anywhere(resolved) for plant, resolved in loops.items()}
-        self.digests = digests(map(self._system, loops))
+        self._loops = {
+            unit.named(Path(plant).stem) if unit.name else plant: (anywhere(resolved), unit)
+            for plant, resolved in loops.items()
+            for unit in resolved.settings.topology.units
+        }
+        self.plants = tuple(self._loops)
+        self.digests = digests(map(self._system, self.plants))
         self._made: dict[Any, np.ndarray] = {}
         self._fitted: dict[str, Fit] = {}
 
@@ -126,18 +131,18 @@ class FaultRunner:
 
     def limits(self, plant: str) -> Limits:
         """As the parameters of the controller say."""
-        resolved = self._loops[plant]
+        resolved, unit = self._loops[plant]
 
         def value(name: str) -> float:
-            return float(resolved.value(f"controller.{name}", np.inf))
+            return float(resolved.value(unit.own(f"controller.{name}"), np.inf))
 
         share = share_of(resolved.T_max)
         return Limits(value("T_max"), value("T_add_max"), value("T_take_max"), value("omega_max"), share)
 
     def without_status(self, plant: str) -> str | None:
         """The file of a controller of somebody else that does not tell its status."""
-        fitted = self._fit(plant)
-        return fitted.file(STATUS) if STATUS in fitted.absent else None
+        fitted, status = self._fit(plant), self._loops[plant][1].own(STATUS)
+        return fitted.file(status) if status in fitted.absent else None
 
     def _shared(self, plant: str, situation: str, noise: int, on_ice: tuple[Fault, ...], control: bool) -> np.ndarray:
         key = plant, situation, noise, on_ice, control
@@ -156,21 +161,22 @@ class FaultRunner:
         faults: Sequence[Fault] = (),
         control: bool = True,
     ) -> np.ndarray:
-        manoeuvre = for_car(_with(on_ice, SITUATIONS[situation].manoeuvre), self._loops[plant].T_max)
+        manoeuvre = for_car(_with(on_ice, SITUATIONS[situation].manoeuvre), self._loops[plant][0].T_max)
         road = {**manoeuvre.road, "mu": ICE} if on_ice else manoeuvre.road
-        parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise)
-        resolved = self._loops[plant].replace(control=control)
-        parameters |= dict(resolved.runs.parameters) | _parameters(faults, noise)
-        inputs = dict(signals(manoeuvre, control))
+        loop, unit = self._loops[plant]
+        resolved, topology = loop.replace(control=control), loop.settings.topology
+        parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise, topology)
+        parameters |= dict(resolved.runs.parameters) | _parameters(faults, noise, unit)
+        inputs = dict(signals(manoeuvre, control, topology=topology))
         for fault in faults:
             if fault.kind.number == SWITCHED_OFF:
-                inputs[roles.ENABLE] = partial(np.less_equal, fault.end)
+                inputs[unit.own(roles.ENABLE)] = partial(np.less_equal, fault.end)
         given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
-        system = with_faults(resolved.system, self._injector)
+        system = with_faults(resolved.system, self._injector, topology)
         results = run(system, Experiment(manoeuvre.duration, **given))
         if results.ended:
             raise RunEnded(f"{results.ended}: there is nothing to judge")
-        return _completed(at_samples(results))
+        return _completed(at_samples(of_unit(results, unit)))
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:
@@ -179,7 +185,8 @@ class FaultRunner:
         return self._fitted[plant]
 
     def _system(self, plant: str) -> System:
-        return with_faults(self._loops[plant].system, self._injector)
+        resolved, _ = self._loops[plant]
+        return with_faults(resolved.system, self._injector, resolved.settings.topology)
 
 
 def _completed(run: np.ndarray) -> np.ndarray:
@@ -191,39 +198,45 @@ def _completed(run: np.ndarray) -> np.ndarray:
     return append_fields(run, lacking, [told[name] for name in lacking], usemask=False) if lacking else run
 
 
-def with_faults(system: System, injector: Path) -> System:
-    """The loop with SignalFaults, an FMU, between the sensors and the controller.
+def with_faults(system: System, injector: Path, topology: Topology = ONE_UNIT) -> System:
+    """The loop with SignalFaults, an FMU, between the sensors and the controller of each drive unit.
 
     Frames of motor control are counted where a run gives the input COUNTED.
     """
-    instances = dict(system.instances)
-    controller = instances.pop("controller")
-    others = {name: instances.pop(name) for name in list(instances) if name != "motor"}
+    units, motors = topology.units, topology.instances("motor")
+    injectors = {unit.instance(INSTANCE): injector for unit in units}
+    first = {name: system.instances[name] for name in (*motors, *topology.instances("controller"))}
     return replace(
         system,
-        instances={**instances, INSTANCE: injector, "controller": controller, **others},
-        connections=tuple(_through_faults(system.connections)),
-        outputs=(*system.outputs, *JUDGED),
-        offered=tuple(_through_faults(system.offered)),
-        optional={**system.optional, STATUS: None, T_DAMP: None},
-        own=system.own | {INSTANCE},
-        any_value=frozenset({INSTANCE}),
+        instances={name: first[name] for name in motors} | injectors | first | dict(system.instances),
+        connections=tuple(_through_faults(system.connections, units)),
+        outputs=(*system.outputs, *(port._replace(name=unit.own(port.name)) for unit in units for port in JUDGED)),
+        offered=tuple(_through_faults(system.offered, units)),
+        optional={**system.optional, **{unit.own(name): None for unit in units for name in (STATUS, T_DAMP)}},
+        own=system.own | injectors.keys(),
+        any_value=frozenset(injectors),
     )
 
 
-def _through_faults(connections: Iterable[Connection]) -> Iterator[Connection]:
+def _through_faults(connections: Iterable[Connection], units: Iterable[DriveUnit]) -> Iterator[Connection]:
+    passed = {
+        unit.own(f"controller.{name}"): (unit.own(f"{INSTANCE}.{sent}"), unit.own(f"{INSTANCE}.{name}"))
+        for unit in units
+        for name, sent in PASSES.items()
+    }
     for connection in connections:
-        name = connection.target.removeprefix("controller.")
-        if connection.target.startswith("controller.") and name in PASSES:
-            yield connection._replace(target=f"{INSTANCE}.{PASSES[name]}")
-            yield connection._replace(source=f"{INSTANCE}.{name}")
+        if connection.target in passed:
+            sent, gets = passed[connection.target]
+            yield connection._replace(target=sent)
+            yield connection._replace(source=gets)
         else:
             yield connection
 
 
-def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
-    """Of SignalFaults."""
-    given: dict[str, float] = {f"{INSTANCE}.seed": seed}
+def _parameters(faults: Sequence[Fault], seed: int, unit: DriveUnit) -> dict[str, float]:
+    """Of SignalFaults in a drive unit."""
+    instance = unit.instance(INSTANCE)
+    given: dict[str, float] = {f"{instance}.seed": seed}
     for k, fault in enumerate((fault for fault in faults if fault.kind.signal), 1):
         values = {
             "kind": fault.kind.number,
@@ -233,7 +246,7 @@ def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
             "size": fault.size,
             "share": fault.share,
         }
-        given |= {f"{INSTANCE}.{name}_{k}": value for name, value in values.items()}
+        given |= {f"{instance}.{name}_{k}": value for name, value in values.items()}
     return given
 
 

@@ -15,6 +15,7 @@ from toolground.plain_text import plain
 from ...design.uncertainty_box import changed
 from ...loop import roles
 from ...loop.resolved import ResolvedLoop
+from ...loop.topology import DriveUnit, of_unit
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -33,13 +34,15 @@ class Loop(NamedTuple):
 
     Attributes:
         resolved: with absolute paths, so that any process can make its runs.
-        blocks: the parameters of each block by its place, as they are without a deviation.
+        blocks: the parameters of each block but the controllers, as they are without a deviation.
         digests: of the FMUs.
+        unit: whose signals count.
     """
 
     resolved: ResolvedLoop
     blocks: Mapping[str, Mapping[str, float]]
     digests: Mapping[Path, str]
+    unit: DriveUnit = DriveUnit()
 
 
 class CaseRunner:
@@ -52,7 +55,11 @@ class CaseRunner:
 
     def __init__(self, given: Given, seed: int) -> None:
         self.seed = seed
-        self.loops = {key: _loop(resolved) for key, resolved in given.items()}
+        self.loops = {
+            (unit.named(plant), controller): _loop(resolved, unit)
+            for (plant, controller), resolved in given.items()
+            for unit in resolved.settings.topology.units
+        }
         for (plant, _), one in self.loops.items():
             if not any(name.startswith("plant.") for name in changed(one.blocks, draw(1, seed).deviation)):
                 warn_once(f"{plant} has no parameter that is drawn: all cars are the same one, with other sensors")
@@ -70,7 +77,7 @@ class CaseRunner:
         one, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
         require_same_fmus(one.digests)
         resolved = one.resolved.with_parameters(changed(one.blocks, drawn.deviation))
-        return simulate(self.manoeuvre(case), resolved, control=control, seed=drawn.noise)
+        return of_unit(simulate(self.manoeuvre(case), resolved, control=control, seed=drawn.noise), one.unit)
 
     def outcome(self, case: Case) -> Outcome:
         """What came of a case; one that an FMU ends has no metrics.
@@ -100,9 +107,12 @@ class CaseRunner:
 
     def _T_max(self, case: Case) -> float:
         """The largest torque of the motor in N.m; inf where its FMU does not say."""
-        return self.loops[case.plant, case.controller].blocks["motor"].get("T_max", np.inf)
+        one = self.loops[case.plant, case.controller]
+        return one.blocks[one.unit.instance("motor")].get("T_max", np.inf)
 
 
-def _loop(resolved: ResolvedLoop) -> Loop:
-    blocks = resolved.fit.parameters(resolved.settings.parameters)
-    return Loop(anywhere(resolved), blocks, digests([resolved.system]))
+def _loop(resolved: ResolvedLoop, unit: DriveUnit) -> Loop:
+    controllers = resolved.settings.topology.instances("controller")
+    every = resolved.fit.parameters(resolved.settings.parameters)
+    blocks = {instance: parameters for instance, parameters in every.items() if instance not in controllers}
+    return Loop(anywhere(resolved), blocks, digests([resolved.system]), unit)
