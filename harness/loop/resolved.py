@@ -20,9 +20,11 @@ from toolground.unit_conversion import factor
 
 from . import roles
 from .built_fmus import built_together, require_there
+from .mapped_names import known_variables
 from .parameter_words import said
 from .places import PLACES, PLANTS, ROAD_LOAD, NameOrFile
 from .settings import Changes, Settings, loop, own_frequency, running, settings
+from .topology import Topology
 
 LOG = logging.getLogger(__name__)
 
@@ -56,7 +58,9 @@ class ResolvedLoop:
     def fit(self) -> Fit:
         """The loop with the interfaces of its FMUs."""
         require_there(self.runs)
-        return fit(self.system, parameters=self.runs.parameters)
+        fitted = fit(self.system, parameters=self.runs.parameters)
+        _warn_of_unfed(fitted, self.settings.topology)
+        return fitted
 
     @property
     def frequency(self) -> float | None:
@@ -88,6 +92,18 @@ class ResolvedLoop:
 
     def __getstate__(self) -> dict[str, Any]:
         return {"settings": self.settings}
+
+
+def _warn_of_unfed(fitted: Fit, topology: Topology) -> None:
+    """Names the inputs of FMUs of somebody else that stay as they start, but for those that our blocks leave so too."""
+    fed = {connection.target for connection in fitted.system.connections} | {port.name for port in topology.inputs}
+    for instance, interface in fitted.interfaces.items():
+        if instance in fitted.system.own:
+            continue
+        inputs = (v for v in interface.of_causality("input") if v.valueReference not in interface.rates.values())
+        unfed = [v.name for v in inputs if f"{instance}.{v.name}" not in fed]
+        if foreign := [name for name in unfed if name not in known_variables(topology.places[instance])]:
+            warn_once(f"{interface.path.name}: nothing in the loop feeds {', '.join(foreign)}; it stays as it starts")
 
 
 GivenLoop = ResolvedLoop | Settings | NameOrFile | None

@@ -122,7 +122,7 @@ def of_unit(results: Results, unit: DriveUnit) -> Results:
     """A run with the signals of a drive unit under the names of their roles, without those of the others."""
     if unit == DriveUnit():
         return results
-    fields: Mapping[str, Any] = results.dtype.fields or {}
+    fields: Any = results.dtype.fields or {}
     columns = {"time": "time"} | {role: own for role in _roles(fields, unit) if (own := unit.own(role)) in fields}
     columns |= {f"{BODY}.{role}": f"{BODY}.{own}" for role, own in unit.of_plant if f"{BODY}.{own}" in fields}
     layout: Any = {
