@@ -119,12 +119,14 @@ ONE_UNIT = Topology()
 
 
 def of_unit(results: Results, unit: DriveUnit) -> Results:
-    """A run with the signals of a drive unit under the names of their roles, without those of the others."""
+    """A run with the signals of a drive unit under the names of their roles, without the blocks of the others."""
     if unit == DriveUnit():
         return results
     fields: Any = results.dtype.fields or {}
-    columns = {"time": "time"} | {role: own for role in _roles(fields, unit) if (own := unit.own(role)) in fields}
-    columns |= {f"{BODY}.{role}": f"{BODY}.{own}" for role, own in unit.of_plant if f"{BODY}.{own}" in fields}
+    renamed = {f"{BODY}.{role}": f"{BODY}.{own}" for role, own in unit.of_plant if f"{BODY}.{own}" in fields}
+    others = (name for name in fields if name not in renamed.values())
+    columns = {"time": "time"} | {role: own for role in _roles(others, unit) if (own := unit.own(role)) in fields}
+    columns |= renamed
     layout: Any = {
         "names": list(columns),
         "formats": [fields[own][0] for own in columns.values()],
