@@ -41,12 +41,12 @@ class Layout:
 
     def __init__(self, instances: Sequence[str], connections: Sequence[Connection]) -> None:
         columns = _columns(instances, connections)
-        sides = {end: list(dict.fromkeys(c[end] for c in connections)) for end in (0, 1)}
+        sides = [dict.fromkeys(c.target for c in connections), dict.fromkeys(c.source for c in connections)]
         self.boxes: dict[str, Box] = {}
         self.places: dict[str, Place] = {}
         tallest = defaultdict[int, float](float)
         for instance in instances:
-            own = [[name for name in sides[end] if _block(name) == instance] for end in (1, 0)]
+            own = [[name for name in side if _block(name) == instance] for side in sides]
             column, height = columns[instance], PITCH * (1 + max(2, *map(len, own)))
             left, top = column * (WIDTH + GAP), -tallest[column]
             self.boxes[instance] = Box(left, top - height, left + WIDTH, top)
