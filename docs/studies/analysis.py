@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from math import inf, isfinite, isnan
 
 from driveline.harness.loop.places import PLACES, PLANTS
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.resolved import resolve
 from driveline.harness.metrics.declaration import declared
 from driveline.harness.metrics.estimate import EstimateMetrics
 from driveline.harness.metrics.run_metrics import Metrics
@@ -150,7 +150,7 @@ def sensitivities_table(sensitivities: Iterable[Sensitivity]) -> Table:
 
 
 def measure() -> Measured:
-    analysis = analyse({plant: Settings(plant) for plant in PLANTS})
+    analysis = analyse({plant: resolve(plant) for plant in PLANTS})
     important = most_important(analysis.sensitivities, MOST)
     ordered = [of for name in important for of in analysis.sensitivities if of.parameter == name]
     loops = {at.plant: (at.loop, at.margins) for at in analysis.at if at.speed == SPEEDS[1]}
@@ -177,10 +177,10 @@ SENSITIVE = "controller.k_d"
 
 def again() -> dict[str, Table]:
     parameters = {PLANT: {}}
-    point, settings = point_of(PLANT, OURS, {}), {PLANT: Settings(PLANT)}
+    point, loops = point_of(PLANT, OURS, {}), {PLANT: resolve(PLANT)}
     value = varied(PLANT, OURS, {})[SENSITIVE]
     runs = [Run(PLANT, "tipin15", SENSITIVE, factor * value) for factor in FACTORS]
-    (nominal, estimate), small, large = (run_of(run, settings) for run in (Run(PLANT, "tipin15"), *runs))
+    (nominal, estimate), small, large = (run_of(run, loops) for run in (Run(PLANT, "tipin15"), *runs))
     (soft,) = swept(point, SWEEP._replace(values=SWEEP.values[:1]))
     return {
         "margins": margins_table([linear_part(Part(PLANT, f"{SPEEDS[1]:g}"), OURS, parameters)]),

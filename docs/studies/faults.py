@@ -7,6 +7,7 @@ from functools import cache
 from driveline.fmus.catalogue import SIGNAL_FAULTS
 from driveline.harness.loop.built_fmus import built, made_if_missing
 from driveline.harness.loop.places import BUILD, NATIVE, PLANTS
+from driveline.harness.loop.resolved import resolve
 from driveline.harness.studies.faults.fault_campaign import Outcome, campaign, count
 from driveline.harness.studies.faults.fault_cases import PLANS, case
 from driveline.harness.studies.faults.fault_injection import FaultRunner
@@ -25,7 +26,8 @@ SENTINELS = range(1, 7)
 
 @cache
 def _runner() -> FaultRunner:
-    return FaultRunner(made_if_missing(SIGNAL_FAULTS, BUILD, NATIVE), {plant: built(plant) for plant in PLANTS})
+    loops = {plant: resolve(built(plant)) for plant in PLANTS}
+    return FaultRunner(made_if_missing(SIGNAL_FAULTS, BUILD, NATIVE), loops)
 
 
 def outcomes_of(plan: str, numbers: Sequence[int]) -> list[Outcome]:

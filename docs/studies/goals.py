@@ -19,6 +19,7 @@ from driveline.harness.design.loop_parameters import loop_parameters
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS, SLOW_MOTOR
 from driveline.harness.design.uncertainty_box import NOMINAL, Deviation, deviating
 from driveline.harness.loop.places import PLACES, PLANTS
+from driveline.harness.loop.resolved import as_given
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
@@ -175,7 +176,7 @@ def monte_carlo(draws: int, parameters: Mapping[str, Any], settings: Settings | 
     """
     controller, usual = PLACES["controller"][0], settings or Settings()
     loops = {
-        (plant, controller): usual.replace(plant=plant, parameters=loop_parameters(parameters, plant))
+        (plant, controller): as_given(usual, plant=plant, parameters=loop_parameters(parameters, plant))
         for plant in PLANTS
     }
     runner = CaseRunner(loops, seed=1)

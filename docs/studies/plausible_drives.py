@@ -13,7 +13,7 @@ import numpy as np
 
 from driveline.harness.loop.built_fmus import built
 from driveline.harness.loop.places import PLACES, PLANTS, T_S
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.resolved import ResolvedLoop, resolve
 from driveline.harness.manoeuvres.catalogue import USUAL_MANOEUVRES
 from driveline.harness.manoeuvres.road_load import Track
 from driveline.harness.metrics.evaluate import at_samples
@@ -117,22 +117,22 @@ def spiked(channel: Channel) -> Spiked:
     return Spiked(channel.quantity, lone, named)
 
 
-def judged(case: Case, damped: bool, settings: Settings, follow: bool = True) -> Judged:
+def judged(case: Case, damped: bool, loop: ResolvedLoop, follow: bool = True) -> Judged:
     """What is found odd in a drive.
 
     Args:
-        settings: of the loop that made it, and follows it.
+        loop: that made it, and follows it.
         follow: whether the plant follows it.
     """
-    results = CaseRunner({(case.plant, case.controller): settings}, SEED).results(case, damped)
-    load, T_max = car_of(settings)
+    results = CaseRunner({(case.plant, case.controller): loop}, SEED).results(case, damped)
+    load, T_max = car_of(loop)
     findings, error = [], 0.0
     drives = [recorded(results, stride) for stride in STRIDES]
     for drive in drives:
         findings += of_drive(drive, load, T_max)
         if follow:
             track = Track.of(drive, T_max)
-            signals = followed(track, load, settings)[1]
+            signals = followed(track, load, loop)[1]
             findings += not_followed(drive, signals["time"], signals["plant.v"])
             error = max(error, speed_error(signals, track))
     balanced = balance(forces(drives[0].time, drives[0].v, drives[0].T_mot, load))
@@ -141,8 +141,8 @@ def judged(case: Case, damped: bool, settings: Settings, follow: bool = True) ->
 
 def all_judged(drives: Sequence[tuple[Case, bool]]) -> list[Judged]:
     """What is found odd in drives."""
-    settings = {plant: built(plant) for plant in PLANTS}
-    return run_many(lambda drive: judged(*drive, settings[drive[0].plant]), drives, label="drives")
+    loops = {plant: resolve(built(plant)) for plant in PLANTS}
+    return run_many(lambda drive: judged(*drive, loops[drive[0].plant]), drives, label="drives")
 
 
 def plants_table(drives: Sequence[Judged]) -> Table:

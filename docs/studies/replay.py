@@ -8,7 +8,8 @@ from pathlib import Path
 
 from driveline.harness.loop.built_fmus import built_together
 from driveline.harness.loop.places import PLACES, PLANTS
-from driveline.harness.loop.settings import settings
+from driveline.harness.loop.resolved import resolve
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.road_load import Track
 from driveline.harness.metrics.run_metrics import RideMetrics
@@ -38,7 +39,8 @@ def recordings() -> Iterator[Path]:
 
 def rides_table(path: Path, plant: str, controllers: Sequence[str] = CONTROLLERS) -> Table:
     """A row for each controller."""
-    loops = built_together(settings(plant, controller=name) for name in controllers)
+    settings = built_together(Settings(plant, name) for name in controllers)
+    loops = [resolve(each) for each in settings]
     load, T_max = car_of(loops[0])
     rides = replay(Track.of(read_drive(path), T_max), load, dict(zip(controllers, loops, strict=True)))
     metrics_of = {ride.controller: ride.metrics for ride in rides}

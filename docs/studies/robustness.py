@@ -6,6 +6,7 @@ from math import inf, isinf
 
 from driveline.harness.loop.built_fmus import built_together
 from driveline.harness.loop.places import COMPARATORS, PLACES, PLANTS
+from driveline.harness.loop.resolved import resolve
 from driveline.harness.loop.settings import settings
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.outcome import SHOWN, Outcome
@@ -40,7 +41,7 @@ COLUMNS = (
 def runner(controllers: Sequence[str]) -> CaseRunner:
     """Of these controllers on both plants."""
     pairs = [(plant, controller) for plant in PLANTS for controller in controllers]
-    loops = built_together(settings(plant, controller=controller) for plant, controller in pairs)
+    loops = map(resolve, built_together(settings(plant, controller=controller) for plant, controller in pairs))
     return CaseRunner(dict(zip(pairs, loops, strict=True)), SEED)
 
 

@@ -16,13 +16,12 @@ from driveline.harness.exchange.target.costs import Size, size_of
 from driveline.harness.exchange.target.offline_cases import recorded
 from driveline.harness.exchange.target.record import Record, numbers, record
 from driveline.harness.loop.places import PLACES, T_S
-from driveline.harness.loop.settings import Settings, loop
+from driveline.harness.loop.resolved import resolve
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.views.colours import BLACK, BLUE, VERMILION
 from driveline.harness.views.panels import DASHED, Axis, Curve, Drawing, Panel
 from fmublocks.native.statements import SINGLE
 from fmublocks.target.sources import target_sources
-from fmuloop.wiring import fit
 
 from .study import Cell, Column, Measured, Study, Table
 from .target_deviations import findings, reason
@@ -114,7 +113,7 @@ def torques(comparison: Comparison) -> Drawing:
 
 
 def measure() -> Measured:
-    target_record = record(Settings())
+    target_record = record(resolve())
     told = numbers(target_record)
     loops = {name: tuple(of.values()) for name, of in told["loops"].items()}
     typical = next(comparison for comparison in target_record.comparisons if comparison.case.name == TYPICAL)
@@ -134,12 +133,11 @@ SENTINEL = "tipin15"
 
 
 def again() -> dict[str, Table]:
-    settings = Settings()
-    system = loop(settings)
-    own = fit(system).interfaces["controller"]
+    resolved = resolve()
+    own = resolved.fit.interfaces["controller"]
     inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
     with programs(CONTROLLERS[OURS]) as binaries:
-        compared = compare(binaries, recorded(MANOEUVRES[SENTINEL], system, inputs, settings), outputs)
+        compared = compare(binaries, recorded(MANOEUVRES[SENTINEL], resolved, inputs), outputs)
         size = size_of(binaries)
     return {"cases": cases_table([compared]), "costs": Table("what", COSTS, sizes(size))}
 

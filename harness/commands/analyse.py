@@ -38,15 +38,20 @@ class Arguments(ParameterFiles, FmuFolder, Replacing, JsonPrinting):
 
 def run(args: Arguments) -> int:
     # here and not above: mistakes and help are answered without them
-    from ..loop.given_parameters import built_with
+    from ..loop.resolved import resolve_all
     from ..studies.margins.analysis_report import announce, write
     from ..studies.margins.loop_analysis import analyse
 
-    loops = (Settings(plant, args.controller, folder=args.fmus) for plant in dict.fromkeys(args.plant or PLANTS))
-    given = {each.plant_name: each for each in built_with(loops, args.vehicle, args.parameters, {})}
+    settings = {
+        (plant, args.controller): Settings(plant, args.controller, folder=args.fmus)
+        for plant in dict.fromkeys(args.plant or PLANTS)
+    }
+    loops = resolve_all(settings, args.vehicle, args.parameters).values()
+    given = {each.settings.plant_name: each for each in loops}
     warn_of_gains(args.vehicle, args.parameters, given.values())
     same = {plant: distinguishing(each) for plant, each in given.items()}
-    with job(args, args.output / "analysis.json", same, given, [args.output / "margins.csv"]) as made:
+    fits = {plant: each.fit for plant, each in given.items()}
+    with job(args, args.output / "analysis.json", same, fits, [args.output / "margins.csv"]) as made:
         found = analyse(given)
         made.begin()
         made.wrote(*write(found, args.output))

@@ -21,17 +21,17 @@ from toolground.arguments import record
 from toolground.printing import JsonPrinting
 
 from ..loop.places import PLACES
-from ..loop.settings import Settings
 from ..manoeuvres.catalogue import COMPARED
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.run_metrics import Metrics
 from ..views.metrics_table import legend
-from .jobs import RunJob, distinguishing, job
+from .jobs import distinguishing, job
 from .manoeuvres import Chosen, Listing, chosen, manoeuvre
 from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plants
-from .settings import all_settings, caption, dampings, say_unknowns
+from .settings import all_loops, caption, dampings, say_unknowns
 
 if TYPE_CHECKING:
+    from ..loop.resolved import ResolvedLoop
     from ..studies.compare.compare import Outcome
 
 IN_HELP = {"metrics": legend(Metrics), "compared": ", ".join(COMPARED)}
@@ -48,7 +48,7 @@ class Arguments(Listing, Loop, Replacing, SignalsFormat, Figures, Report, JsonPr
 
 
 def run(args: Arguments) -> int:
-    given = all_settings(args, args.plant, args.controller or PLACES["controller"][:1])
+    given = all_loops(args, args.plant, args.controller or PLACES["controller"][:1])
     # here and not above: mistakes and help are answered without them
     from ..manoeuvres.drivable import require_possible
     from ..studies.compare.compare import RUNS, cases, loops_of, rows_of, run_cases, write_tables
@@ -57,45 +57,44 @@ def run(args: Arguments) -> int:
     from ..views.terminal import print_runs
 
     requested = args.manoeuvre if args.manoeuvre.manoeuvres else chosen(COMPARED)
-    requested = requested.for_car(next(iter(given.values())))
+    requested = requested.with_torque(next(iter(given.values())).T_max)
     manoeuvres, read = requested.manoeuvres, list(requested.files.values())
     plants, names = (list(dict.fromkeys(key[k] for key in given)) for k in (0, 1))
     options = args.options(caption(args), *((each.name, 0.0, each.duration) for each in manoeuvres.values()))
-    systems = {" with ".join(key): made for key, made in given.items()}
-    same: dict[str, Any] = {name: distinguishing(each) for name, each in systems.items()}
+    fits = {" with ".join(key): each.fit for key, each in given.items()}
+    same: dict[str, Any] = {" with ".join(key): distinguishing(each) for key, each in given.items()}
     same |= {"manoeuvres": list(manoeuvres)} | requested.digests | args.other_format
     loops, folder = loops_of(given), args.output / RUNS
     signals = {
         case: signals_path(folder / case.file_name, args.format) for case in cases(plants, list(manoeuvres), names)
     }
-    with job(args, args.output / "compare.json", same, systems, [args.output / name for name in TABLES], read) as made:
-        require_possible(*requested, made.fits, systems)
+    with job(args, args.output / "compare.json", same, fits, [args.output / name for name in TABLES], read) as made:
+        require_possible(*requested, given.values())
         made.begin(*signals.values(), *(path.with_suffix(".json") for path in signals.values()))
         outcomes, figures = run_cases(list(signals), args.output, loops, manoeuvres, args.format, options)
         made.found({str(outcome.case): outcome.results for outcome in outcomes})
         title, rows = dampings(names), rows_of(outcomes)
         made.wrote(*write_tables(outcomes, args.output, title), *figures)
-        for outcome, path in zip(outcomes, signals.values(), strict=True):
-            case = outcome.case
-            one = loops[case.plant, case.controller], manoeuvres[case.manoeuvre]
-            _record(made, outcome, path, *one, read)
+        for case, outcome in {outcome.case: outcome for outcome in outcomes}.items():
+            _record(outcome, signals[case], loops[case.plant, case.controller], manoeuvres[case.manoeuvre], read)
         for provenance, path in made.reports():
             report(outcomes, manoeuvres, provenance, path)
-        builds = {made.plant_name: made.build for made in given.values() if str(made.plant) in PLACES["plant"]}
+        of_plants = (each.settings for each in given.values() if "plant" in each.system.own)
+        builds = {settings.plant_name: settings.build for settings in of_plants}
         built = ", ".join(f"{plant} {build}" for plant, build in builds.items())
-        args.say(f"{f'FMUs: {built}; ' if built else ''}signals of {len(outcomes)} runs: {folder}")
+        args.say(f"{f'FMUs: {built}; ' if built else ''}signals of {len(signals)} runs: {folder}")
         say_unknowns(args)
         made.tell(print_runs, rows, title, runs=[each.record for each in outcomes])
     return 0
 
 
 def _record(
-    made: RunJob, outcome: "Outcome", signals: Path, settings: Settings, manoeuvre: Manoeuvre, read: Sequence[Path]
+    outcome: "Outcome", signals: Path, resolved: "ResolvedLoop", manoeuvre: Manoeuvre, read: Sequence[Path]
 ) -> None:
     """Writes what made the signals of a run beside them."""
     from ..simulation.provenance import write_record
 
     case, found = outcome.case, outcome.results.remarks
     one = {"manoeuvre": case.manoeuvre, "damping": "on" if case.control else "off"}
-    fits = {case.plant: made.fits[f"{case.plant} with {settings.controller_name}"]}
-    write_record(signals.with_suffix(".json"), one | distinguishing(settings, manoeuvre), fits, [signals], read, found)
+    fits = {case.plant: resolved.fit}
+    write_record(signals.with_suffix(".json"), one | distinguishing(resolved, manoeuvre), fits, [signals], read, found)

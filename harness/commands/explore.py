@@ -22,7 +22,7 @@ from ..loop.places import PLACES
 from ..manoeuvres.catalogue import MANOEUVRES
 from .manoeuvres import Chosen, Listing, manoeuvre
 from .options import Loop, controllers, output, plants
-from .settings import all_settings
+from .settings import all_loops
 
 
 @record
@@ -53,7 +53,6 @@ def run(args: Arguments) -> int:
     from ...fmus.building.parameter_files import read_parameters, read_vehicle
     from ..explorer.content import content, write_page
     from ..explorer.module import require_possible, sources_of
-    from ..manoeuvres.for_car import largest_torque
     from ..studies.drives.replay import car_of
 
     for path in others:
@@ -63,9 +62,9 @@ def run(args: Arguments) -> int:
         require_possible()
     if args.recording is not None:
         recording = read_drive(args.recording, **args.as_read)
-    given = all_settings(args, args.plant, args.controller)
+    given = all_loops(args, args.plant, args.controller)
     first = next(iter(given.values()))
-    T_max = largest_torque(first)
+    T_max = first.T_max
     if args.recording is not None and recording is not None:
         tell(of_drive(recording, *car_of(first)), args.recording)
     car = read_vehicle(args.vehicle) if args.vehicle else {}

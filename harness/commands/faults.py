@@ -24,13 +24,12 @@ from toolground.arguments import option, record
 from toolground.printing import JsonPrinting
 
 from ..loop.places import NATIVE
-from ..loop.settings import loop
 from .jobs import Job, campaign_job, distinguishing, job
 from .options import Campaign, case, cases, controller, output, seed
-from .settings import caption, plants_settings, say_unknowns
+from .settings import caption, plants_loops, say_unknowns
 
 if TYPE_CHECKING:
-    from fmuloop.system import System
+    from fmuloop.wiring import Fit
 
     from ..studies.faults.fault_campaign import Outcome
     from ..studies.faults.fault_injection import FaultRunner
@@ -54,20 +53,22 @@ class Arguments(Campaign, JsonPrinting):
 
 
 def run(args: Arguments) -> int:
-    given = plants_settings(args)
+    given = plants_loops(args)
     # here and not above: mistakes and help are answered without them
+    from fmuloop.wiring import fit
+
     from ...fmus.catalogue import SIGNAL_FAULTS
     from ..loop.built_fmus import made_if_missing
     from ..studies.faults.fault_injection import FaultRunner, with_faults
 
     injector = made_if_missing(SIGNAL_FAULTS, args.fmus, NATIVE)
-    runner = FaultRunner(injector, {str(each.plant): each for each in given.values()})
+    runner = FaultRunner(injector, {str(each.settings.plant): each for each in given.values()})
     same: dict[str, Any] = {name: distinguishing(each) for name, each in given.items()}
-    tried = {name: with_faults(loop(each), injector) for name, each in given.items()}
+    tried = {name: fit(with_faults(each.system, injector, each.settings.topology)) for name, each in given.items()}
     return (_all if args.case is None else _one)(args, runner, same, tried)
 
 
-def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
+def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], fits: "dict[str, Fit]") -> int:
     from fmuloop.executors import dask_executor
 
     from ..studies.faults.fault_campaign import campaign, table
@@ -79,7 +80,7 @@ def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: 
     record, cases = args.output / "faults.json", args.output / "faults.csv"
     same |= of_the_cases(runner, args.seed, plan)
     with (
-        campaign_job(args, record, cases, table(args.seed, runner.plants, plan), same, systems) as (made, archive),
+        campaign_job(args, record, cases, table(args.seed, runner.plants, plan), same, fits) as (made, archive),
         dask_executor(args.scheduler) as executor,
     ):
         outcomes = campaign(runner, range(1, args.cases + 1), args.seed, archive, executor=executor, plan=plan)
@@ -89,7 +90,7 @@ def _all(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: 
         return _tell(made, outcomes, runner)
 
 
-def _one(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: "dict[str, System]") -> int:
+def _one(args: Arguments, runner: "FaultRunner", same: dict[str, Any], fits: "dict[str, Fit]") -> int:
     """One case again."""
     from ..studies.faults.fault_cases import PLANS
     from ..studies.faults.fault_report import write_case
@@ -97,7 +98,7 @@ def _one(args: Arguments, runner: "FaultRunner", same: dict[str, Any], systems: 
     assert args.case is not None
     plan = PLANS[args.campaign or "dry"]
     record, signals = (args.output / f"case_{args.case}{ending}" for ending in (".json", ".csv"))
-    with job(args, record, same | {"case": args.case}, systems, [signals]) as made:
+    with job(args, record, same | {"case": args.case}, fits, [signals]) as made:
         made.begin()
         outcome, files = write_case(args.case, args.seed, runner, args.output, case_caption(args), plan)
         made.wrote(*files)

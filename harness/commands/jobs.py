@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from toolground.printing import Printing
 
-from ..loop.settings import Settings, loop
+from ..loop.topology import ONE_UNIT
 from ..manoeuvres.manoeuvre import Manoeuvre
 
 if TYPE_CHECKING:
     from fmuloop.results import Results
-    from fmuloop.system import System
     from fmuloop.wiring import Fit
 
+    from ..loop.resolved import ResolvedLoop
     from ..simulation.case_archive import Campaign, CaseArchive, Table
     from ..simulation.provenance import Made
 
@@ -73,18 +73,13 @@ class RunJob(Job["Made"]):
         """See `harness.simulation.provenance.Made.begin`."""
         self._made.begin(*others)
 
-    @property
-    def fits(self) -> "Mapping[str, Fit]":
-        """The systems that run, by their names."""
-        return self._made.fits
-
 
 @contextmanager
 def job(
     args: Any,
     record: Path,
     run: Mapping[str, Any],
-    systems: "Mapping[str, Settings | System]",
+    fits: "Mapping[str, Fit]",
     results: Sequence[Path] = (),
     read: Iterable[Path] = (),
 ) -> Iterator[RunJob]:
@@ -94,7 +89,7 @@ def job(
         args: the record of the command, with `replace`, and with `report` if it has that.
         record: the JSON file beside the results.
         run: all that distinguishes it.
-        systems: that run, or the settings of the loops that run, by their names.
+        fits: the systems that run, by their names.
         results: files that it will write, as far as their names are known.
         read: files that it reads beside the FMUs and those of --vehicle and --parameters.
 
@@ -103,11 +98,11 @@ def job(
     """
     from ..simulation.provenance import content, recorded
 
-    reports, inputs, wired = _reports(args), [*read, *_files(args)], _wired(systems)
+    reports, inputs = _reports(args), [*read, *_files(args)]
     one = RunJob(args, reports)
-    with recorded(record, run, wired, inputs, [*results, *reports], args.replace) as made:
-        _warn_of_absent(args, made.fits)
-        one.start(made, lambda: content(run, made.fits, [], inputs, made.found))
+    with recorded(record, run, fits, inputs, [*results, *reports], args.replace) as made:
+        _warn_of_absent(args, fits)
+        one.start(made, lambda: content(run, fits, [], inputs, made.found))
         yield one
     one.end(record)
 
@@ -119,7 +114,7 @@ def campaign_job(
     path: Path,
     table: "Table[Any, Any]",
     run: Mapping[str, Any],
-    systems: "Mapping[str, Settings | System]",
+    fits: "Mapping[str, Fit]",
 ) -> "Iterator[tuple[Job[Campaign[Any, Any]], CaseArchive[Any, Any]]]":
     """Within it a command runs the cases of a campaign that are not in its archive yet; else as `job`.
 
@@ -130,20 +125,18 @@ def campaign_job(
     Raises:
         UserError: there are results of another campaign; nothing has been run.
     """
-    from fmuloop.wiring import fit
-
     from ..simulation.case_archive import resumable
 
-    reports, wired = _reports(args), _wired(systems)
-    _warn_of_absent(args, {name: fit(system) for name, system in wired.items()})
+    reports = _reports(args)
+    _warn_of_absent(args, fits)
     one: Job[Campaign[Any, Any]] = Job(args, reports)
-    with resumable(path, table, record, run, wired, _files(args), reports, args.replace) as made:
+    with resumable(path, table, record, run, fits, _files(args), reports, args.replace) as made:
         one.start(made, lambda: made.provenance)
         yield one, made.archive
     one.end(record)
 
 
-def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[str, Any]:
+def distinguishing(resolved: "ResolvedLoop", manoeuvre: Manoeuvre | None = None) -> dict[str, Any]:
     """What distinguishes a run of the loop from others: all that was set, and the FMUs: ours by the start values
     that they were built with, others by their content.
 
@@ -156,10 +149,10 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
     from ..loop.fmu_cache import as_built
     from ..simulation.simulate import start
 
-    system = loop(made)
+    system, made = resolved.system, resolved.settings
     ours = {name: origin_of(path) for name, path in system.instances.items() if name in system.own}
     others = {name: path for name, path in system.instances.items() if name not in system.own}
-    own = start(manoeuvre, made.seed) if manoeuvre else {}
+    own = start(manoeuvre, made.seed, made.topology) if manoeuvre else {}
     digests = {name: digest(path) for name, path in others.items() if path.is_file()}
     return {
         "fmus": {name: str(as_built(path)) for name, path in system.instances.items()},
@@ -168,6 +161,7 @@ def distinguishing(made: Settings, manoeuvre: Manoeuvre | None = None) -> dict[s
         "parameters": {**own, **made.parameters},
         **({"road_load": made.road_load} if made.road_load else {}),
         **({"frequency": made.frequency} if made.frequency else {}),
+        **({"topology": made.topology.units} if made.topology != ONE_UNIT else {}),
         "seed": made.seed,
         "mapping": made.mapping,
     }
@@ -189,7 +183,3 @@ def _reports(args: Any) -> list[Path]:
 
 def _files(args: Any) -> list[Path | None]:
     return [getattr(args, name, None) for name in ("vehicle", "parameters")]
-
-
-def _wired(systems: "Mapping[str, Settings | System]") -> "dict[str, System]":
-    return {name: loop(each) if isinstance(each, Settings) else each for name, each in systems.items()}

@@ -13,7 +13,6 @@ from toolground.known_names import nearest
 from toolground.plain_text import plain
 
 from ..loop.places import PLANTS
-from ..loop.settings import Settings
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .options import names_or_files
@@ -40,14 +39,8 @@ class Chosen(NamedTuple):
         found = {name: sha256(path.read_bytes()).hexdigest() for name, path in self.files.items()}
         return {"manoeuvre_files": found} if found else {}
 
-    def for_car(self, settings: Settings) -> "Chosen":
-        """These for the car of a loop; what is written in files stays as it is."""
-        from ..manoeuvres.for_car import largest_torque  # not for help
-
-        return self.with_torque(largest_torque(settings))
-
     def with_torque(self, T_max: float) -> "Chosen":
-        """The same for a motor with this largest torque in N.m."""
+        """These for a car whose motor has this largest torque in N.m; what is written in files stays as it is."""
         from ..manoeuvres.for_car import for_car
 
         each = self.manoeuvres.items()

@@ -202,6 +202,9 @@ class Loop(ParameterFiles, FmuFolder, ForeignLimits):
         metavar="FILE.toml|NAME=THEIRS",
     )
     build: str | None = expert(None, BUILD_HELP, choices=BUILDS)
+    topology: Path | None = expert(
+        None, "the drive units of the loop, if it has several (default: one)", file, metavar="FILE.toml"
+    )
 
 
 def _output(text: str) -> Path:

@@ -27,9 +27,10 @@ from toolground.arguments import option, record
 from toolground.plain_text import quoted
 from toolground.printing import Printing
 
+from ..loop import roles
 from ..manoeuvres.prbs import FEEDBACK, TEST_DRIVE, TEST_SPEED
 from .options import output
-from .settings import settings
+from .settings import resolved as resolved_of
 from .signals_run import OneRun, control, signals_job, write_frames
 
 
@@ -65,28 +66,29 @@ class Arguments(OneRun, Printing):
 
 
 def run(args: Arguments) -> int:
-    given = settings(args, args.plant, args.controller, control=args.control == "on")
+    resolved = resolved_of(args, args.plant, args.controller, control=args.control == "on")
+    given = resolved.settings
     # here and not above: mistakes and help are answered without them
     from ..simulation.excitation_drive import MeasurementWheels, planned, sensed
     from ..simulation.simulate import simulate
     from ..views.signals_file import write_signals
 
     demand = {name: getattr(args, name) for name in ("mean", "amplitude", "clock", "order", "duration")}
-    drive = planned(given, demand, args.speed / 3.6)
+    drive = planned(resolved, demand, args.speed / 3.6)
     wheels = MeasurementWheels(args.noise, args.offset, args.gain_error)
     same = {"demand": demand | {"speed": args.speed, "slope": drive.slope}, "measurement_wheels": asdict(wheels)}
-    with signals_job(args, given, drive.manoeuvre, same) as (made, stem):
+    with signals_job(args, resolved, drive.manoeuvre, same) as (made, stem):
         args.say(
             f"{drive.manoeuvre.description}, {args.duration:g} s on {given.plant_name}, {given.build} FMUs, "
             f"damping {args.control}, slope {100.0 * drive.slope:.2f} %"
         )
-        results = simulate(drive.manoeuvre, given)
+        results = simulate(drive.manoeuvre, resolved)
         made.begin()
         made.found({given.plant_name: results})
         recorded = sensed(results, drive.load.i, wheels, given.seed)
         made.wrote(write_signals(recorded, stem, args.format))
         if args.frames:
-            made.wrote(*write_frames(made.fits[given.plant_name], given, results, stem, args.frames))
-        v, T_gear = 3.6 * results["plant.v"], abs(results["plant.T_gear"]).max()
+            made.wrote(*write_frames(resolved, results, stem, args.frames))
+        v, T_gear = 3.6 * results[roles.BODY_SPEED], abs(results[roles.GEAR_TORQUE]).max()
         args.say(f"speed {v.min():.1f} to {v.max():.1f} km/h, gear torque up to {T_gear:.0f} N.m")
     return 0

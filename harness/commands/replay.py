@@ -33,18 +33,18 @@ from toolground.errors import UserError
 from toolground.printing import JsonPrinting
 
 from ..loop.places import PLACES, PLANTS
-from ..loop.settings import Settings
 from ..metrics.run_metrics import RideMetrics
 from ..views.metrics_table import legend
 from .jobs import RunJob, distinguishing, job
 from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plant
 from .recorded import Recorded
-from .settings import all_settings, caption
+from .settings import all_loops, caption
 
 if TYPE_CHECKING:
     from driverecords.drive import Drive
     from driverecords.findings import Finding
 
+    from ..loop.resolved import ResolvedLoop
     from ..manoeuvres.road_load import RoadLoad, Track
     from ..studies.drives.replay import Ride
 
@@ -77,7 +77,7 @@ def run(args: Arguments) -> int:
     require_held(args.held)
     recording = read_drive(args.recording, **args.as_read)
     same = args.distinguishing | {"held": args.held} | args.other_format
-    found = all_settings(args, [args.plant], args.controller or PLACES["controller"][:1])
+    found = all_loops(args, [args.plant], args.controller or PLACES["controller"][:1])
     given = {controller: made for (_, controller), made in found.items()}
     load, T_max = car_of(next(iter(given.values())))
     odd = of_drive(recording, load, T_max)
@@ -94,7 +94,7 @@ def drive(
     odd: "Sequence[Finding]",
     track: "Track",
     load: "RoadLoad",
-    given: Mapping[str, Settings],
+    given: "Mapping[str, ResolvedLoop]",
     same: Mapping[str, Any],
 ) -> None:
     """Makes the rides with each controller, and writes and tells what they are worth.
@@ -102,7 +102,7 @@ def drive(
     Args:
         odd: what makes the recording implausible before it is driven.
         load: of the plant.
-        given: settings by the names of the controllers.
+        given: loops by the names of the controllers.
         same: what distinguishes the run beside them.
     """
     from driverecords.findings import tell
@@ -114,8 +114,9 @@ def drive(
     options = args.options(caption(args), (recording.name, 0.0, float(track.t[-1])))
     same = {**same, "controllers": list(given)} | {f"with {n}": distinguishing(each) for n, each in given.items()}
     record, metrics = (args.output / f"{recording.name}{end}" for end in (".json", "_metrics.csv"))
-    plant, build = next((each.plant_name, each.build) for each in given.values())
-    with job(args, record, same, given, [metrics], args.read) as made:
+    settings = next(iter(given.values())).settings
+    plant, build, fits = settings.plant_name, settings.build, {name: each.fit for name, each in given.items()}
+    with job(args, record, same, fits, [metrics], args.read) as made:
         level = "" if recording.elevation is not None else "; it has no elevation: the road is level"
         args.say(f"{recording.name}: {track.t[-1]:.0f} s on {plant}, {build} FMUs, {', '.join(given)}{level}")
         rides = replay(track, load, given, args.held)

@@ -17,12 +17,13 @@ from typing import TYPE_CHECKING, Any
 from toolground.arguments import option, record
 from toolground.printing import JsonPrinting
 
-from ..loop.settings import Settings
 from .jobs import Job, campaign_job, distinguishing, job
 from .options import Campaign, case, cases, controllers, output, seed
-from .settings import all_settings, caption, say_unknowns
+from .settings import all_loops, caption, say_unknowns
 
 if TYPE_CHECKING:
+    from fmuloop.wiring import Fit
+
     from ..studies.robustness.case_runs import CaseRunner
     from ..studies.robustness.outcome import Outcome
 
@@ -39,17 +40,18 @@ class Arguments(Campaign, JsonPrinting):
 
 
 def run(args: Arguments) -> int:
-    given = all_settings(args, args.plant, args.controller)
+    given = all_loops(args, args.plant, args.controller)
     # here and not above: mistakes and help are answered without them
     from ..studies.robustness.case_runs import CaseRunner
     from ..studies.robustness.robustness_campaign import distinguishing as of_the_draws
 
     runner, loops = CaseRunner(given, args.seed), {" with ".join(key): each for key, each in given.items()}
     same = of_the_draws(runner) | {name: distinguishing(each) for name, each in loops.items()}
-    return (_all if args.case is None else _one)(args, runner, same, loops)
+    fits = {name: each.fit for name, each in loops.items()}
+    return (_all if args.case is None else _one)(args, runner, same, fits)
 
 
-def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
+def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], fits: "Mapping[str, Fit]") -> int:
     from fmuloop.executors import dask_executor
 
     from ..studies.robustness.robustness_campaign import RUNS, campaign, order
@@ -57,7 +59,7 @@ def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Map
 
     record, runs = args.output / "robustness.json", args.output / "runs.csv"
     with (
-        campaign_job(args, record, runs, RUNS, same, loops) as (made, archive),
+        campaign_job(args, record, runs, RUNS, same, fits) as (made, archive),
         dask_executor(args.scheduler) as executor,
     ):
         outcomes = campaign(runner, range(1, args.cases + 1), archive, executor=executor)
@@ -68,14 +70,14 @@ def _all(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Map
     return 0
 
 
-def _one(args: Arguments, runner: "CaseRunner", same: dict[str, Any], loops: Mapping[str, Settings]) -> int:
+def _one(args: Arguments, runner: "CaseRunner", same: dict[str, Any], fits: "Mapping[str, Fit]") -> int:
     """One draw again."""
     from ..studies.robustness.draws import draw
     from ..studies.robustness.robustness_campaign import campaign
     from ..studies.robustness.robustness_report import write_draw
 
     assert args.case is not None
-    with job(args, args.output / f"draw_{args.case}.json", same | {"case": args.case}, loops) as made:
+    with job(args, args.output / f"draw_{args.case}.json", same | {"case": args.case}, fits) as made:
         args.say(f"draw {draw(args.case, args.seed)}")
         outcomes = campaign(runner, [args.case])
         made.begin()

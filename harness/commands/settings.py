@@ -1,39 +1,42 @@
-"""What the options of a run say: its settings, and what tells runs apart."""
+"""What the options of a run say: its loop, and what tells runs apart."""
 
 import dataclasses
 import logging
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from shlex import quote
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..loop.parameter_words import said
 from ..loop.places import PLACES, PLANTS, by_name
-from ..loop.settings import Settings, loop
+from ..loop.settings import Settings
+from ..loop.topology import ONE_UNIT
 from ..views.metrics_table import DAMPINGS
 from .options import Loop
+
+if TYPE_CHECKING:
+    from ..loop.resolved import ResolvedLoop
 
 LOG = logging.getLogger(__name__)
 
 
-def settings(args: Loop, plant: str, controller: str, **run: Any) -> Settings:
-    """What the options say for a plant and a controller; the FMUs are there then.
+def resolved(args: Loop, plant: str, controller: str, **run: Any) -> "ResolvedLoop":
+    """The loop of a plant and a controller, as the options say.
 
     Args:
         run: fields of the settings that no option of the loop gives.
 
     Raises:
-        WiringError: a text of --map is not of the form that it must have, or the FMUs do not have a parameter, or not
-            with that value.
-        UserError: an FMU is missing.
-        ParameterFileError: a file of parameters is refused.
+        WiringError, UserError, ParameterFileError: as of `harness.loop.resolved.resolve_all`.
     """
-    from ..loop.given_parameters import built_with  # mistakes and help are answered without
+    return _resolved(args, {(plant, controller): _given(args, plant, controller, args.map, **run)})[plant, controller]
 
-    given = [_given(args, plant, controller, args.map, **run)]
-    (made,) = built_with(given, args.vehicle, args.parameters, dict(args.set))
-    warn_of_gains(args.vehicle, args.parameters, [made])
-    return made
+
+def _resolved(args: Loop, given: Mapping[tuple[str, str], Settings]) -> "dict[tuple[str, str], ResolvedLoop]":
+    from ..loop.resolved import resolve_all  # mistakes and help are answered without
+
+    loops = resolve_all(given, args.vehicle, args.parameters, dict(args.set))
+    warn_of_gains(args.vehicle, args.parameters, loops.values())
+    return loops
 
 
 def _given(args: Loop, plant: str, controller: str, mapping: Mapping[str, str], **run: Any) -> Settings:
@@ -48,11 +51,12 @@ def _given(args: Loop, plant: str, controller: str, mapping: Mapping[str, str], 
         build=args.build,
         mapping=mapping,
         limits=args.limits,
+        topology=args.topology or ONE_UNIT,  # type: ignore[arg-type]  # a file becomes one there
         **run,
     )
 
 
-def warn_of_gains(vehicle: Path | None, parameters: Path | None, loops: Iterable[Settings]) -> None:
+def warn_of_gains(vehicle: Path | None, parameters: Path | None, loops: "Iterable[ResolvedLoop]") -> None:
     """Says that a car has the gains of another one, if a controller has such gains, or is the default car."""
     if vehicle is None:
         return
@@ -60,74 +64,45 @@ def warn_of_gains(vehicle: Path | None, parameters: Path | None, loops: Iterable
 
     if not toml_entries(vehicle):
         LOG.warning(f"{vehicle} has no parameter: the car is the default one (`driveline car --template` has them all)")
-    elif parameters is None and any(made.control and _has_gains(made) for made in loops):
+    elif parameters is None and any(each.settings.control and _has_gains(each) for each in loops):
         LOG.warning("the controller has the gains of the default car; `driveline design` makes those of a vehicle file")
 
 
-def _has_gains(made: Settings) -> bool:
-    if str(made.controller) in PLACES["controller"]:
+def _has_gains(resolved: "ResolvedLoop") -> bool:
+    if str(resolved.settings.controller) in PLACES["controller"]:
         return True
-    from fmuloop.wiring import fit
-
     from ...fmus.building.parameter_files import car_names
     from ...fmus.catalogue import FMUS
 
-    has = {variable.name for variable in fit(loop(made)).interfaces["controller"].of_causality("parameter")}
+    controller = resolved.fit.interfaces[resolved.settings.topology.instances("controller")[0]]
+    has = {variable.name for variable in controller.of_causality("parameter")}
     return bool(has & {*FMUS["DampingController"].block.Parameters._fields} - {*car_names()})
 
 
-def all_settings(args: Loop, plants: Sequence[str], controllers: Sequence[str]) -> dict[tuple[str, str], Settings]:
-    """What the options say for each plant with each controller, by the names of both.
-
-    Of several controllers the file of parameters is for those that have all that it names, and a value of --set for
-    those that have the parameter; the others keep theirs. Of --map see `harness.loop.mapped_names.mappings`.
+def all_loops(args: Loop, plants: Sequence[str], controllers: Sequence[str]) -> "dict[tuple[str, str], ResolvedLoop]":
+    """The loops of each plant with each controller, as the options say, by the names of both; of --map see
+    `harness.loop.mapped_names.mappings`.
 
     Args:
         plants: none: all of the project.
         controllers: none: all of the project.
 
     Raises:
-        WiringError, UserError, ParameterFileError: as of `settings`; two plants or controllers have the same name,
-            or the file or a value is for none of them.
+        WiringError, UserError, ParameterFileError: as of `harness.loop.resolved.resolve_all`; two plants or controllers
+            have the same name.
     """
-    from fmuloop.parameter_changes import parted
-    from fmuloop.wiring import find, fit, require
-
-    from ..loop.built_fmus import built_together
-    from ..loop.given_parameters import NotTaken, require_of_plant, with_parameters
     from ..loop.mapped_names import mappings
 
     plants = list(by_name(plants or PLANTS, "plant").values())
     each = by_name(controllers or PLACES["controller"], "controller")
     mapped = mappings(args.map, plants, list(each.values()), args.limits)
     given = {(p, name): _given(args, p, each[name], mapped[p, each[name]]) for p in plants for name in each}
-    assigned, several, found = dict(args.set), len(each) > 1, dict[tuple[str, str], Settings]()
-    for plant in plants:
-        require_of_plant(assigned, plant)
-    refusals: dict[str, list[NotTaken]] = {plant: [] for plant in plants}
-    for (plant, name), made in zip(given, built_together(given.values(), alike=False), strict=True):
-        try:
-            made = with_parameters(made, args.vehicle, args.parameters, assigned, several)
-        except NotTaken as refusal:
-            refusals[plant].append(refusal)
-            if len(refusals[plant]) == len(each):
-                raise refusals[plant][0] from None
-            made = with_parameters(made, args.vehicle, None, assigned, several)
-        found[made.plant_name, name] = made
-    warn_of_gains(args.vehicle, args.parameters, found.values())
-    for parameter in assigned if several else ():
-        lacking = dict.fromkeys(name for (_, name), made in found.items() if parameter not in made.parameters)
-        if len(lacking) == len(each):
-            fits = (fit(loop(made)) for made in found.values())
-            require(line for each in fits for line in find(parted(parameter)[0], "parameter", each.interfaces)[1])
-        elif lacking:
-            LOG.warning(said("without", name=f"--set {parameter}", controllers=", ".join(lacking)))
-    return found
+    return {(one.settings.plant_name, name): one for (_, name), one in _resolved(args, given).items()}
 
 
-def plants_settings(args: Any) -> dict[str, Settings]:
-    """What the options say for each plant, with the one controller that they name; by the names of the plants."""
-    return {plant: made for (plant, _), made in all_settings(args, args.plant, [args.controller]).items()}
+def plants_loops(args: Any) -> "dict[str, ResolvedLoop]":
+    """The loops of each plant with the one controller that the options name, by the names of the plants."""
+    return {plant: each for (plant, _), each in all_loops(args, args.plant, [args.controller]).items()}
 
 
 def say_unknowns(args: Any) -> None:

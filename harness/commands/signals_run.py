@@ -10,14 +10,14 @@ from toolground.errors import UserError
 from toolground.optional_packages import required
 
 from ..loop.places import PLACES
-from ..loop.settings import Settings, loop
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .jobs import RunJob, distinguishing, job
 from .options import Loop, Replacing, SignalsFormat, controller, output, plant
 
 if TYPE_CHECKING:
     from fmuloop.results import Results
-    from fmuloop.wiring import Fit
+
+    from ..loop.resolved import ResolvedLoop
 
 SENDERS = ("can", "motor")
 """The places whose blocks declare frames."""
@@ -41,7 +41,7 @@ class OneRun(Loop, Replacing, SignalsFormat):
 
 @contextmanager
 def signals_job(
-    args: OneRun, given: Settings, manoeuvre: Manoeuvre, run: Mapping[str, Any], read: Iterable[Path] = ()
+    args: OneRun, resolved: "ResolvedLoop", manoeuvre: Manoeuvre, run: Mapping[str, Any], read: Iterable[Path] = ()
 ) -> Iterator[tuple[RunJob, Path]]:
     """As `harness.commands.jobs.job`, with the path of the files without their endings, PLANT_MANOEUVRE_CONTROLLER, or
     without damping PLANT_MANOEUVRE_off, of a controller that is not the usual one PLANT_MANOEUVRE_CONTROLLER_off.
@@ -54,22 +54,23 @@ def signals_job(
     """
     from ..views.signals_file import signals_path
 
+    given = resolved.settings
     if args.frames:
-        _require_frames(args, loop(given).own)
+        _require_frames(args, resolved.system.own)
     ends = [] if given.controller_name == PLACES["controller"][0] and not given.control else [given.controller_name]
     stem = args.output / "_".join([given.plant_name, manoeuvre.name, *ends, *([] if given.control else ["off"])])
-    same = {**run, "damping": args.control} | distinguishing(given, manoeuvre) | args.other_format
+    same = {**run, "damping": args.control} | distinguishing(resolved, manoeuvre) | args.other_format
     record, signals = stem.with_name(f"{stem.name}.json"), signals_path(stem, args.format)
-    with job(args, record, same, {given.plant_name: given}, [signals], read) as made:
+    with job(args, record, same, {given.plant_name: resolved.fit}, [signals], read) as made:
         yield made, stem
 
 
-def write_frames(fitted: "Fit", given: Settings, results: "Results", stem: Path, ending: str) -> tuple[Path, Path]:
+def write_frames(resolved: "ResolvedLoop", results: "Results", stem: Path, ending: str) -> tuple[Path, Path]:
     """Writes the frames of a run as a log of the bus, and its database; returns the files."""
     from ..exchange.bus.database import telegrams, write_dbc
     from ..exchange.bus.log import write_log
 
-    sent = telegrams(fitted.parameters(given.parameters))
+    sent = telegrams(resolved.fit.parameters(resolved.settings.parameters))
     log, database = (stem.with_name(f"{stem.name}.{each}") for each in (ending, "dbc"))
     write_log(sent, results, log)
     write_dbc(sent, database)

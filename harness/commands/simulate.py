@@ -25,7 +25,8 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from ..views.figure_options import FigureOptions
 from .manoeuvres import Chosen, Listing, manoeuvre
 from .options import Figures, output
-from .settings import caption, settings
+from .settings import caption
+from .settings import resolved as resolved_of
 from .signals_run import OneRun, signals_job, write_frames
 
 
@@ -44,51 +45,53 @@ class Arguments(Listing, OneRun, Figures, JsonPrinting):
 
 def run(args: Arguments) -> int:
     options = _options_of_figure(args, args.manoeuvre.first)
-    given = settings(args, args.plant, args.controller).replace(
+    resolved = resolved_of(args, args.plant, args.controller).replace(
         control=args.control == "on", step_size=args.step, scheme=Scheme(args.scheme)
     )
-    chosen = args.manoeuvre.for_car(given)
+    given, chosen = resolved.settings, args.manoeuvre.with_torque(resolved.T_max)
     manoeuvre = chosen.first
     # here and not above: mistakes and help are answered without them
     from fmuloop.experiment import require_steps
     from fmuloop.schedule import described, transfers
 
     from ..manoeuvres.drivable import require_possible
-    from ..metrics.evaluate import evaluate
     from ..simulation.simulate import simulate
-    from ..studies.compare.compare import Case, Outcome
+    from ..studies.compare.compare import Case, outcomes_of
     from ..views.signal_lines import WITHOUT
     from ..views.signals_file import write_signals
     from ..views.terminal import print_runs
 
     require_steps(manoeuvre.duration, args.step)
     same = {"manoeuvre": manoeuvre.name, "step_size": args.step, "scheme": args.scheme} | args.manoeuvre.digests
-    with signals_job(args, given, manoeuvre, same, args.manoeuvre.files.values()) as (made, stem):
-        fitted = made.fits[given.plant_name]
-        require_possible(*chosen, made.fits, {given.plant_name: given})
+    with signals_job(args, resolved, manoeuvre, same, args.manoeuvre.files.values()) as (made, stem):
+        require_possible(*chosen, [resolved])
         args.say(f"{manoeuvre.name} on {given.plant_name}, {given.build} FMUs, damping {args.control}")
-        results = simulate(manoeuvre, given)
+        results = simulate(manoeuvre, resolved)
         made.begin()
         made.found({given.plant_name: results})
         made.wrote(write_signals(results, stem, args.format))
         if args.frames:
-            made.wrote(*write_frames(fitted, given, results, stem, args.frames))
+            made.wrote(*write_frames(resolved, results, stem, args.frames))
         if args.plot:
+            from ..loop.topology import of_unit
             from ..views.run_figure import plot_run
 
-            title = f"{given.plant_name}, {manoeuvre.description}, damping {args.control}"
-            made.wrote(*plot_run(results, manoeuvre, title, stem, options))
+            for unit in given.topology.units:
+                title = f"{unit.named(given.plant_name)}, {manoeuvre.description}, damping {args.control}"
+                file = stem.with_name("_".join(filter(None, (stem.name, unit.name))))
+                made.wrote(*plot_run(of_unit(results, unit), manoeuvre, title, file, options))
         if given.scheme is Scheme.PROPAGATED:
-            args.say(described(transfers(fitted.system, fitted.interfaces)))
+            args.say(described(transfers(resolved.fit.system, resolved.fit.interfaces)))
+        controller = given.controller_name if given.control else WITHOUT
         try:
-            metrics = evaluate(results, manoeuvre)
+            case = Case(given.plant_name, manoeuvre.name, controller)
+            outcomes = outcomes_of(case, manoeuvre, results, given.topology)
         except ValueError as reason:  # the steps do not fit into the samples of the controller
             made.tell(print, f"no metrics: {reason}", runs=[], no_metrics=str(reason))
         else:
-            controller = given.controller_name if given.control else WITHOUT
-            outcome = Outcome(Case(given.plant_name, manoeuvre.name, controller), metrics, results)
             title = f"damping by {controller}" if given.control else WITHOUT
-            made.tell(print_runs, [outcome.row()], title, runs=[outcome.record])
+            rows = [outcome.row() for outcome in outcomes]
+            made.tell(print_runs, rows, title, runs=[outcome.record for outcome in outcomes])
     return 0
 
 

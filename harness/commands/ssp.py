@@ -20,12 +20,12 @@ from toolground.arguments import record
 from toolground.printing import Printing
 
 from ..loop.places import BUILDS, PLANTS
-from ..loop.settings import Settings, loop
+from ..loop.settings import Settings
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .jobs import distinguishing, job
 from .manoeuvres import Chosen, Listing, manoeuvre
 from .options import Loop, Replacing, controller, output, plants
-from .settings import plants_settings
+from .settings import plants_loops
 
 if TYPE_CHECKING:
     from fmuloop.wiring import Fit
@@ -46,8 +46,9 @@ def run(args: Arguments) -> int:
     from fmuloop.parameter_changes import require_constant
 
     require_constant(dict(args.set), "an SSP")
-    given = plants_settings(args)
+    given = plants_loops(args)
     from fmublocks.archive import write_archive
+    from fmuloop.wiring import fit
 
     from ...fmus.catalogue import MANOEUVRE
     from ..exchange.ssp.loop_with_source import with_source
@@ -55,16 +56,17 @@ def run(args: Arguments) -> int:
     from ..loop.built_fmus import made_if_missing
     from ..manoeuvres.drivable import require_possible
 
-    chosen = args.manoeuvre.for_car(next(iter(given.values())))
+    first = next(iter(given.values()))
+    chosen = args.manoeuvre.with_torque(first.T_max)
     manoeuvre, ssp = chosen.first, args.output / "driveline.ssp"
     same: dict[str, Any] = {name: distinguishing(each, manoeuvre) for name, each in given.items()}
     plants = list(dict.fromkeys(args.plant or PLANTS))
     same |= {"plants": plants, "manoeuvre": manoeuvre.name} | args.manoeuvre.digests
-    source = made_if_missing(MANOEUVRE, args.fmus, next(iter(given.values())).build or BUILDS[0])
-    sourced = {name: with_source(loop(each), source) for name, each in given.items()}
+    source = made_if_missing(MANOEUVRE, args.fmus, first.settings.build or BUILDS[0])
+    sourced = {name: fit(with_source(each.system, source)) for name, each in given.items()}
     with job(args, args.output / "driveline.json", same, sourced, [ssp], args.manoeuvre.files.values()) as made:
-        require_possible(*chosen, made.fits, given)
-        variants = {name: _variant(fitted, manoeuvre, given[name]) for name, fitted in made.fits.items()}
+        require_possible(*chosen, given.values())
+        variants = {name: _variant(fitted, manoeuvre, given[name].settings) for name, fitted in sourced.items()}
         content = package(variants, manoeuvre)
         made.begin()
         write_archive(content, ssp)

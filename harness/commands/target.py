@@ -19,7 +19,7 @@ from toolground.printing import Printing
 from ..loop.places import PLACES
 from .jobs import distinguishing, job
 from .options import Loop, OurController, Replacing, controller, output, plant
-from .settings import settings
+from .settings import resolved as resolved_of
 
 
 @record
@@ -136,12 +136,12 @@ class Record(Loop, Replacing, Printing):
 def run_record(args: Record) -> int:
     if args.controller not in PLACES["controller"]:
         raise UserError(f"there is no C of {args.controller}; {nearest(args.controller, PLACES['controller'])}")
-    given = settings(args, args.plant, args.controller)
+    given = resolved_of(args, args.plant, args.controller)
     # here and not above: mistakes and help are answered without them
     from ..exchange.target.record import NUMBERS, announce, record, write
 
-    plant, numbers = given.plant_name, args.output / NUMBERS
-    with job(args, args.output / "target.json", distinguishing(given), {plant: given}, [numbers]) as made:
+    plant, numbers = given.settings.plant_name, args.output / NUMBERS
+    with job(args, args.output / "target.json", distinguishing(given), {plant: given.fit}, [numbers]) as made:
         found = record(given)
         made.begin()
         made.wrote(*write(found, args.output))

@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 
 from driverecords.drive import Drive
-from fmuloop.wiring import Fit, fit
+from fmuloop.wiring import Fit
 from toolground.atomic_files import complete
 from toolground.errors import UserError
 from toolground.written_numbers import REAL
 
 from ...fmus.building.one_car import DEFAULT_CAR, with_estimates
-from ..loop.built_fmus import frequency_of_plant
 from ..loop.parameter_words import FORMS, WORDS
 from ..loop.places import PARAMETERS, PLACES, STEP_SIZE, T_S
-from ..loop.settings import Settings, loop
+from ..loop.resolved import ResolvedLoop, frequency_of_plant
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.drivable import require_road
 from ..manoeuvres.for_car import share_of
@@ -58,12 +57,12 @@ FREE: Mapping[str, Any] = {
 MOST = 150.0
 """N.m up and down to which a demand is drawn by hand with the default car."""
 
-Given = Mapping[tuple[str, str], Settings]
-"""The settings of the loops by the names of plant and controller."""
+Given = Mapping[tuple[str, str], ResolvedLoop]
+"""The loops by the names of plant and controller."""
 
 
 def content(
-    settings_of: Given,
+    resolved_of: Given,
     of_car: Mapping[str, Any] | None = None,
     gains: Mapping[str, Any] | None = None,
     manoeuvres: Mapping[str, Manoeuvre] = MANOEUVRES,
@@ -84,14 +83,18 @@ def content(
     """
     if recording is not None and recording.name in manoeuvres:
         raise UserError(f"two manoeuvres are called {recording.name}; rename the file of the recording")
-    if mapped := next((settings for settings in settings_of.values() if settings.mapping), None):
-        raise UserError(f"--map {'='.join(next(iter(mapped.mapping.items())))}: a page has the names of the loop")
-    fits = {key: fit(loop(settings)) for key, settings in settings_of.items()}
+    if mapped := next((of.settings.mapping for of in resolved_of.values() if of.settings.mapping), None):
+        raise UserError(f"--map {'='.join(next(iter(mapped.items())))}: a page has the names of the loop")
+    fits = {key: of.fit for key, of in resolved_of.items()}
     car = with_estimates(of_car or _built_for(fits.values()))
-    plants, controllers = (list(dict.fromkeys(key[k] for key in settings_of)) for k in (0, 1))
-    loops = loops_of({named(*key): fitted for key, fitted in fits.items()}, _are_ours(settings_of))
+    plants, controllers = (list(dict.fromkeys(key[k] for key in resolved_of)) for k in (0, 1))
+    loops = loops_of({named(*key): fitted for key, fitted in fits.items()}, _are_ours(resolved_of))
     first = [fits[plant, controllers[0]] for plant in plants]
-    start = {name: value for plant in plants for name, value in settings_of[plant, controllers[0]].parameters.items()}
+    start = {
+        name: value
+        for plant in plants
+        for name, value in resolved_of[plant, controllers[0]].settings.parameters.items()
+    }
     started = {port.name for port in PARAMETERS} | {f"plant.{name}" for m in manoeuvres.values() for name in m.road}
     turned = {"gains": knobs(GAINS, first, start), "car": knobs(CAR, first, start), "road": knobs(ROAD, first, start)}
     return {
@@ -102,15 +105,20 @@ def content(
         "plants": plants,
         "ours": controllers[0],
         "others": dict(zip(controllers[1:], cycle(BESIDE), strict=False)),
-        "base": {named(*key): _base(settings, fits[key], loops) for key, settings in settings_of.items()},
-        "manoeuvres": _recorded(recording, settings_of, controllers[0], plants)
+        "base": {named(*key): _base(of, loops) for key, of in resolved_of.items()},
+        "manoeuvres": _recorded(recording, resolved_of, controllers[0], plants)
         | {name: _shown(manoeuvre, plants, first) for name, manoeuvre in manoeuvres.items()},
         **_by_hand(share_of(T_max)),
         "knobs": {kind: [knob._asdict() for knob in of_kind] for kind, of_kind in turned.items()},
         "sport": SPORT,
         "comfort": COMFORT,
-        "follow": following(car, frequency_of_plant(next(iter(settings_of.values())))),
-        "set": {name: value for of in settings_of.values() for name, value in of.parameters.items() if name in started},
+        "follow": following(car, frequency_of_plant(next(iter(resolved_of.values())))),
+        "set": {
+            name: value
+            for of in resolved_of.values()
+            for name, value in of.settings.parameters.items()
+            if name in started
+        },
         "words": {**WORDS, **FORMS, "real": REAL.pattern},
         "panels": [
             {"label": label, "curves": [signal._asdict() for signal in signals]} for label, signals in PANELS.items()
@@ -159,12 +167,13 @@ def write_page(data: Mapping[str, Any], path: Path) -> None:
         unfinished.write_text(text, encoding="utf-8")
 
 
-def _are_ours(settings_of: Given) -> bool:
-    return all(str(block) in PLACES[place] for of in settings_of.values() for place, block in of.blocks.items())
+def _are_ours(resolved_of: Given) -> bool:
+    return all(of.system.own == PLACES.keys() for of in resolved_of.values())
 
 
-def _base(settings: Settings, fitted: Fit, loops: Mapping[str, Any]) -> dict[str, float]:
+def _base(resolved: ResolvedLoop, loops: Mapping[str, Any]) -> dict[str, float]:
     """`instance.name` -> value that a run has and the module's FMU does not start with."""
+    settings, fitted = resolved.settings, resolved.fit
     values = {f"{place}.seed": float(settings.seed) for place in ("motor", "can")}
     for instance, interface in fitted.interfaces.items():
         declared = loops["fmus"][interface.identifier]["parameters"]
@@ -198,16 +207,16 @@ def _has_road(manoeuvre: Manoeuvre, fitted: Fit) -> bool:
     return True
 
 
-def _recorded(recording: Drive | None, settings_of: Given, ours: str, plants: list[str]) -> dict[str, Any]:
+def _recorded(recording: Drive | None, resolved_of: Given, ours: str, plants: list[str]) -> dict[str, Any]:
     """The recorded drive: on each plant brake and grade keep the car without control at the recorded speed."""
     if recording is None:
         return {}
     duration = float(np.ptp(recording.time))
     on_plants = {}
     for plant in plants:
-        settings = settings_of[plant, ours]
-        load, T_max = car_of(settings)
-        on_plants[plant] = manoeuvre_data(followed(Track.of(recording, T_max), load, settings)[0])
+        resolved = resolved_of[plant, ours]
+        load, T_max = car_of(resolved)
+        on_plants[plant] = manoeuvre_data(followed(Track.of(recording, T_max), load, resolved)[0])
     return {
         recording.name: {
             "description": f"recorded drive of {duration:.0f} s",

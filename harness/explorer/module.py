@@ -18,7 +18,7 @@ from fmublocks.native.packaging import build_native
 from fmublocks.wasm import linked
 from fmuloop.compiled_steps import SOURCE as STEPS
 from fmuloop.interface import Interface, type_of, unit_of
-from fmuloop.wiring import Fit, fit
+from fmuloop.wiring import Fit
 from toolground.atomic_files import complete
 from toolground.collected_warnings import warn_once
 from toolground.errors import UserError
@@ -27,8 +27,7 @@ from toolground.user_cache import is_as_made, kept, named_as_cache, user_cache
 from ...fmus.catalogue import EVERY
 from ...fmus.origin import sources_digest
 from ..loop.places import NATIVE, PLACES
-from ..loop.settings import Settings
-from ..loop.settings import loop as system_of
+from ..loop.resolved import ResolvedLoop, resolve
 from ..metrics.evaluate import COLUMNS
 from .tables import ROWS, Loop, loop, tables
 
@@ -140,19 +139,19 @@ def _kept(made_of: str, make: Callable[[], Module]) -> dict[str, Any]:
 
 
 def _standard() -> Module:
-    with built_as_sources() as given:
-        return build({named(*key): fit(system_of(settings)) for key, settings in given.items()})
+    with built_as_sources() as loops:
+        return build({named(*key): resolved.fit for key, resolved in loops.items()})
 
 
 @contextmanager
-def built_as_sources() -> Iterator[dict[tuple[str, str], Settings]]:
+def built_as_sources() -> Iterator[dict[tuple[str, str], ResolvedLoop]]:
     """The loops of all blocks of the project by the names of plant and controller, of FMUs without a binary, which are
     there within it."""
     with TemporaryDirectory() as folder, ThreadPoolExecutor() as pool:
         without_binary = partial(build_native, folder=Path(folder) / NATIVE, binaries=lambda *_: {})
-        list(pool.map(without_binary, (EVERY[name] for each in PLACES.values() for name in each)))
+        list(pool.map(without_binary, (EVERY[name] for names in PLACES.values() for name in names)))
         yield {
-            (plant, controller): Settings(plant, controller, folder=Path(folder), build=NATIVE)
+            (plant, controller): resolve(plant, controller=controller, folder=Path(folder), build=NATIVE)
             for plant in PLACES["plant"]
             for controller in PLACES["controller"]
         }

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..loop import roles
 from ..loop.places import STEP_SIZE
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import FlatSine, Held, Lines, Signal
@@ -20,9 +21,9 @@ def manoeuvre_data(manoeuvre: Manoeuvre) -> dict[str, Any]:
     return {
         "description": manoeuvre.description,
         "duration": manoeuvre.duration,
-        "start": {"plant.v_0": manoeuvre.v_0, "plant.T_0": manoeuvre.T_0}
+        "start": {roles.FIRST_SPEED: manoeuvre.v_0, roles.FIRST_TORQUE: manoeuvre.T_0}
         | {f"plant.{name}": float(value) for name, value in manoeuvre.road.items()},
-        "inputs": {"controller.T_driver": T_driver, "plant.T_brake": brake, "plant.slope": slope},
+        "inputs": {roles.DEMAND: T_driver, roles.BRAKE_TORQUE: brake, roles.SLOPE: slope},
         "t_0": manoeuvre.t_0,
         "dT": manoeuvre.dT,
     }

@@ -29,6 +29,7 @@ from fmuloop.system import Port, System
 from ...fmus.building.one_car import DAMPERS, DEFAULT_CAR, FOLLOW, of_one_car, with_estimates
 from ...fmus.catalogue import EVERY
 from ...fmus.errors import ParameterFileError
+from ..loop import roles
 from ..loop.places import PLANTS
 from ..loop.settings import Settings, loop
 from .estimator import Z_95
@@ -258,7 +259,7 @@ def _plant(settings: Settings) -> System:
     return System(
         {"plant": whole.instances["plant"]},
         inputs=inputs,
-        outputs=(Port("plant.omega_1", "rad/s"),),
+        outputs=(Port(roles.MOTOR_SPEED, "rad/s"),),
         own=whole.own,
         lane_libraries=whole.lane_libraries,
     )
@@ -274,7 +275,7 @@ def _motor_speed(
     full |= {name: full[name] * by.get("damping", 1.0) for name in DAMPERS}
     full |= {"v_0": by["v_0"] * step.omega_0 * full["r"] / full["i"], "T_0": step.T_0 / by["g_T"]}
     parameters = {f"plant.{name}": full[name] for name in EVERY[plant].block.Parameters._fields if name in full}
-    inputs = {"plant.T_mot": step.T_mot / by["g_T"], "plant.T_brake": 0.0, "plant.slope": moved["slope"]}
+    inputs = {"plant.T_mot": step.T_mot / by["g_T"], roles.BRAKE_TORQUE: 0.0, roles.SLOPE: moved["slope"]}
     experiment = Experiment(float(step.time[-1]), STEP_SIZE, inputs, parameters)
     results = run(system, experiment)
-    return np.interp(step.at, results["time"], results["plant.omega_1"])
+    return np.interp(step.at, results["time"], results[roles.MOTOR_SPEED])

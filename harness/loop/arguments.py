@@ -11,6 +11,8 @@ from fmuloop.limits import Limits
 from fmuloop.system import Scheme
 from toolground.plain_text import plain
 
+from .topology import Topology
+
 
 def _block(value: Any) -> bool:
     return value is None or isinstance(value, str | PathLike)
@@ -56,6 +58,10 @@ ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
         "a dictionary such as {'plant.T_gear': 'Shaft.tau'}, or the path of a file",
     ),
     "limits": (lambda value: isinstance(value, Limits), "Limits"),
+    "topology": (
+        lambda value: isinstance(value, Topology | str | PathLike),
+        "a Topology, or the path of a file that declares one",
+    ),
     "tolerance": (
         lambda value: value is None or (isinstance(value, Real) and 0.0 < float(value) < inf),
         "a number above 0, or None",

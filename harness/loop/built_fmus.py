@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Unpack
 from fmublocks.errors import BuildError, NotPossible
 from fmublocks.origin import located, origin_of
 from fmuloop.system import System
-from fmuloop.wiring import fit
 from toolground.collected_warnings import warn_once
 from toolground.errors import UserError
 
 from ...fmus.origin import is_stale
 from .mapped_names import require_known
-from .places import BUILD, BUILDS, COMPARATORS, NATIVE, PLACES, NameOrFile
-from .settings import Changes, Settings, chosen_build, loop, own_frequency, running, settings
+from .places import BUILD, BUILDS, COMPARATORS, NATIVE, NameOrFile
+from .settings import Changes, Settings, chosen_build, loop, settings
 
 if TYPE_CHECKING:
     from fmublocks.fmu import Fmu
@@ -91,12 +90,6 @@ def warn_of_stale(system: System) -> None:
         warn_once(f"stale, not made from the sources that are installed: {', '.join(map(str, found))}")
 
 
-def require_fitting(loops: Iterable[Settings]) -> None:
-    """As `require_there`, of each of several loops before the first one runs; refuses those that do not fit too."""
-    for made in loops:
-        fit(require_there(running(made)), parameters=made.parameters)
-
-
 Needed = Mapping[str, Collection[str]]
 """Names of FMUs by the build that is needed of them."""
 
@@ -149,26 +142,6 @@ def _needed(loops: Iterable[Settings]) -> Needed:
 def _say(new: Sequence[Path]) -> None:
     if new:
         warn_once(f"built, as missing or stale: {', '.join(path.stem for path in new)}, in {new[0].parent}")
-
-
-def frequency_of_plant(made: Settings) -> float | None:
-    """Frequency in Hz of the drive train that the plant's FMU was built for, or that its parameters give; None for the
-    default car's, which is said where it is only taken."""
-    system, design = loop(made), PLACES["plant"][0]
-    path = system.instances["plant"]
-    lacking = f"{path} tells no C, J_1 and J_2"
-    if path.stem in PLACES["plant"] and (origin := origin_of(path)):
-        if not origin.start_values:
-            return None
-        lacking = f"{path} was built for a car of its own, and there is no {design}.fmu beside it that tells C"
-        if beside := origin_of(path.with_name(f"{design}.fmu")):
-            from ...fmus.catalogue import FMUS  # all equations, which a run of the default car does not need
-
-            return own_frequency({**FMUS[design].block.Parameters._field_defaults, **beside.start_values})
-    elif told := own_frequency(fit(system).parameters(made.parameters)["plant"]):
-        return told
-    warn_once(f"{lacking}: the band of the metrics is that of the default car; --vehicle, or frequency=, tells it")
-    return None
 
 
 def made_if_missing(fmu: "Fmu", folder: Path, build: str) -> Path:

@@ -64,7 +64,7 @@ def require_known(mapping: Mapping[str, str]) -> None:
         place, _, variable = name.partition(".")
         if place not in PLACES:
             problems[f"{place} is no place of the loop, nor the name of an FMU in it; {nearest(place, PLACES)}"] = None
-        elif variable not in (known := _known(place)):
+        elif variable not in (known := known_variables(place)):
             ports = (port for each in (CONNECTIONS, OFFERED) for connection in each for port in connection[:2])
             ports = [*ports, *(port.name for each in (INPUTS, PARAMETERS, OUTPUTS) for port in each)]
             there = dict.fromkeys(port.partition(".")[2] for port in ports if port.startswith(f"{place}."))
@@ -75,7 +75,7 @@ def require_known(mapping: Mapping[str, str]) -> None:
 
 
 @lru_cache
-def _known(place: str) -> frozenset[str]:
+def known_variables(place: str) -> frozenset[str]:
     """Names of the variables that the project's blocks for a place have."""
     from fmublocks.description.variables import interface
 

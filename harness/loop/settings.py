@@ -1,7 +1,7 @@
 """The settings of a run of the loop, as a record, and the loop that they make."""
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from ctypes import CDLL
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
@@ -15,24 +15,19 @@ from fmuloop.limits import USUAL_LIMITS, Limits
 from fmuloop.system import Scheme, System
 from toolground.known_names import nearest
 
+from . import roles
 from .arguments import ARGUMENTS, require_arguments
 from .places import (
     BUILD,
     BUILDS,
-    CONNECTIONS,
-    INPUTS,
     NATIVE,
     NO_DAMPING,
-    OFFERED,
-    OPTIONAL,
-    OUTPUTS,
-    PARAMETERS,
     PLACES,
     STEP_SIZE,
-    TRUTH,
     NameOrFile,
     block_and_variable,
 )
+from .topology import ONE_UNIT, Topology, read_topology
 
 
 class RunChanges(TypedDict, total=False):
@@ -52,6 +47,7 @@ class RunChanges(TypedDict, total=False):
     mapping: Mapping[str, str] | str | Path | None
     limits: Limits
     tolerance: float | None
+    topology: Topology | str | Path
 
 
 class Changes(RunChanges, total=False):
@@ -83,6 +79,8 @@ class Settings:
             the place of the plant; `their_car.T_gear` is that of `their_car.fmu`; or the path of a file with them.
         limits: of FMUs that are given by their path.
         tolerance: relative, of FMUs that integrate; None: that of each FMU's default experiment.
+        topology: the drive units, or the path of a file that declares them, see `harness.loop.topology`; all have the
+            same motor, controller and bus.
 
     Raises:
         WiringError: names a value that no run can take, whatever the FMUs are.
@@ -104,6 +102,7 @@ class Settings:
     mapping: Mapping[str, str] = field(default_factory=dict)
     limits: Limits = USUAL_LIMITS
     tolerance: float | None = None
+    topology: Topology = ONE_UNIT
 
     def __post_init__(self) -> None:
         require_arguments(**vars(self))
@@ -111,6 +110,8 @@ class Settings:
         if isinstance(self.mapping, str | PathLike):
             object.__setattr__(self, "mapping", _read_mapping(Path(self.mapping)))
         others = {name: dict(getattr(self, name) or {}) for name in ("parameters", "road_load")}
+        if isinstance(self.topology, str | PathLike):
+            object.__setattr__(self, "topology", read_topology(Path(self.topology)))
         others["mapping"] = _of_places(self.mapping or {}, given)
         for name, value in {**given, **others, "scheme": Scheme(self.scheme), "folder": Path(self.folder)}.items():
             object.__setattr__(self, name, value)
@@ -210,10 +211,11 @@ def running(made: Settings) -> Settings:
     path = Path(made.controller)
     state = path.stat() if path.is_file() else None
     written = state and (state.st_mtime_ns, state.st_size)
-    if _has(path, made.mapping.get("controller.enable", "enable"), made.limits, written):
+    if _has(path, made.mapping.get(roles.ENABLE, "enable"), made.limits, written):
         return made
+    controllers = {"controller", *made.topology.instances("controller")}
     others = {
-        name: {key: value for key, value in getattr(made, name).items() if not key.startswith("controller.")}
+        name: {key: value for key, value in getattr(made, name).items() if key.partition(".")[0] not in controllers}
         for name in ("parameters", "mapping")
     }
     return dataclasses.replace(made, controller=NO_DAMPING, **others)
@@ -237,27 +239,39 @@ def loop(given: Settings | NameOrFile | None = None, **changes: Unpack[Changes])
     made = running(settings(given, **changes))
     files = _files(made, made.build or chosen_build(made))
     own = frozenset(place for place, block in made.blocks.items() if str(block) in PLACES[place])
-    return _system(tuple(files.items()), tuple(made.mapping.items()), own, made.limits)
+    return _system(tuple(files.items()), tuple(made.mapping.items()), own, made.limits, made.topology)
 
 
 @lru_cache(64)  # of many runs one
 def _system(
-    files: tuple[tuple[str, Path], ...], mapping: tuple[tuple[str, str], ...], own: frozenset[str], limits: Limits
+    files: tuple[tuple[str, Path], ...],
+    mapping: tuple[tuple[str, str], ...],
+    own: frozenset[str],
+    limits: Limits,
+    topology: Topology,
 ) -> System:
-    instances = dict(files)
+    blocks = dict(files)
     return System(
-        instances=instances,
-        connections=CONNECTIONS + (TRUTH if instances["controller"].stem == "TrueMotion" else ()),
-        inputs=INPUTS,
-        parameters=PARAMETERS,
-        outputs=OUTPUTS,
-        mapping=dict(mapping),
-        optional=OPTIONAL,
-        offered=OFFERED,
-        own=own,
+        instances={instance: blocks[place] for instance, place in topology.places.items()},
+        connections=topology.connections + (topology.truth if blocks["controller"].stem == "TrueMotion" else ()),
+        inputs=topology.inputs,
+        parameters=topology.parameters,
+        outputs=topology.outputs,
+        mapping=dict(_of_instances(mapping, topology)),
+        optional=topology.optional,
+        offered=topology.offered,
+        own=frozenset(instance for instance, place in topology.places.items() if place in own),
         limits=limits,
         lane_libraries=libraries_of,
     )
+
+
+def _of_instances(mapping: Iterable[tuple[str, str]], topology: Topology) -> Iterator[tuple[str, str]]:
+    """What is mapped of a place is so of each block there."""
+    for name, theirs in mapping:
+        place, _, variable = name.partition(".")
+        for instance in topology.instances(place) or [place]:
+            yield f"{instance}.{variable}", theirs
 
 
 def libraries_of(system: System) -> dict[str, CDLL] | None:

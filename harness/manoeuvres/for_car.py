@@ -4,23 +4,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import inf, isinf
 
-from fmuloop.wiring import fit
-
 from ...fmus.names import T_MAX
-from ..loop.settings import Settings, loop
+from ..loop import roles
 from .manoeuvre import Manoeuvre
-from .road_load import torque_limit
 from .signals import FlatSine, Held, Lines, Signal
-
-
-def largest_torque(settings: Settings) -> float:
-    """Of the motor of a loop in N.m, as it is set or as its FMU starts; inf: the FMU does not tell."""
-    return torque_limit(fit(loop(settings)).interfaces["motor"], settings.parameters)
 
 
 def given_torque(parameters: Mapping[str, float]) -> float:
     """Largest torque of the motor in N.m among parameters of a loop; inf: it is not among them."""
-    return parameters.get("motor.T_max", inf)
+    return parameters.get(roles.LARGEST_TORQUE, inf)
 
 
 def share_of(T_max: float) -> float:

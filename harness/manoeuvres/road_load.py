@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, isnan, nan
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from fmuloop.errors import WiringError
-from fmuloop.interface import Interface
 
 from ..loop.places import ROAD_LOAD
+from ..loop.resolved import ResolvedLoop
 
 if TYPE_CHECKING:
     from driverecords.drive import Drive
@@ -35,35 +35,21 @@ class RoadLoad:
     c_wa: float
 
     @classmethod
-    def of_plant(
-        cls,
-        plant: Interface,
-        parameters: Mapping[str, float] | None = None,
-        car: Mapping[str, float] | None = None,
-    ) -> Self:
-        """The start values of the parameters of these names.
-
-        Args:
-            parameters: `plant.name` -> value, which a run sets instead; others are ignored.
-            car: of those that the plant does not have, by name.
+    def of(cls, resolved: ResolvedLoop) -> Self:
+        """Of the plant of a loop, or what is told of a car beside it.
 
         Raises:
-            WiringError: the plant lacks one of them.
+            WiringError: neither tells one of them.
         """
-        starts = {
-            name: float(variable.start) * plant.factors.get(name, 1.0)
-            for name, variable in plant.variables.items()
-            if variable.type == "Real" and variable.start
-        }
-        starts = {**(car or {}), **starts}
-        starts |= {name.removeprefix("plant."): value for name, value in (parameters or {}).items()}
-        missing = [name for name in ROAD_LOAD if name not in starts]
-        if missing:
+        beside = resolved.settings.road_load
+        values = {name: resolved.value(f"plant.{name}", beside.get(name, nan)) for name in ROAD_LOAD}
+        if missing := [name for name, value in values.items() if isnan(value)]:
+            path = resolved.fit.interfaces["plant"].path
             raise WiringError(
-                f"{plant.path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(ROAD_LOAD)} "
+                f"{path} has no parameter {', '.join(missing)}; a recorded drive needs {', '.join(ROAD_LOAD)} "
                 f"of the vehicle to work out the brakes; the file of --vehicle may tell them"
             )
-        return cls(**{name: starts[name] for name in ROAD_LOAD})
+        return cls(**values)
 
     @property
     def inertia(self) -> float:
@@ -82,13 +68,6 @@ class RoadLoad:
         """
         resistance = self.m * self.g * self.c_rr * np.sign(v) + self.c_wa * v * np.abs(v)
         return self.inertia * np.gradient(v, interval) + resistance
-
-
-def torque_limit(motor: Interface, parameters: Mapping[str, float] | None = None) -> float:
-    """T_max of a motor in N.m as `parameters` (`motor.T_max` -> value), else its start value says; inf without one."""
-    variable = motor.variables.get("T_max")
-    start = float(variable.start) * motor.factors.get("T_max", 1.0) if variable and variable.start else inf
-    return (parameters or {}).get("motor.T_max", start)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
+from ..loop import roles
 from .declaration import Absent, Column, Metric, measured
 from .evaluate import at_samples
 from .notebook_table import NotebookTable
@@ -35,9 +36,9 @@ class EstimateMetrics(NotebookTable):
 def estimate_metrics(results: np.ndarray) -> EstimateMetrics:
     """What the estimate in a run of the loop is worth; NaN without a gap, or where nothing is estimated."""
     sampled = at_samples(results)
-    told = {"controller.T_gear_hat", "controller.phi_hat"} <= set(results.dtype.names or ())
-    true = sampled["plant.T_gear"]
-    estimated = sampled["controller.T_gear_hat"] if told else true
+    told = {roles.GEAR_TORQUE_ESTIMATE, roles.TWIST_ESTIMATE} <= set(results.dtype.names or ())
+    true = sampled[roles.GEAR_TORQUE]
+    estimated = sampled[roles.GEAR_TORQUE_ESTIMATE] if told else true
     contact, wrong = true != 0.0, np.sign(true) != np.sign(estimated)
     error = (estimated - true)[contact]
 
@@ -52,5 +53,5 @@ def estimate_metrics(results: np.ndarray) -> EstimateMetrics:
         "wrong_mode": lambda: float(wrong.mean()),
         "wrong_gap": of_the_gap,
     }
-    nothing = "the controller estimates no twist" if not (told and sampled["controller.phi_hat"].any()) else None
+    nothing = "the controller estimates no twist" if not (told and sampled[roles.TWIST_ESTIMATE].any()) else None
     return EstimateMetrics(**measured(computed, none_because=nothing))

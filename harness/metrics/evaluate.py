@@ -12,6 +12,7 @@ import numpy as np
 from fmuloop.argument_kinds import require_kind
 from fmuloop.results import Ended
 
+from ..loop import roles
 from ..loop.arguments import A_MANOEUVRE
 from ..loop.places import T_S
 from ..manoeuvres.manoeuvre import Manoeuvre
@@ -36,12 +37,12 @@ WITHHELD = 2.0
 
 COLUMNS = (
     "time",
-    "controller.T_driver",
-    "controller.T_ref",
-    "plant.T_gear",
-    "plant.omega_1",
-    "plant.omega_2",
-    "plant.a_body",
+    roles.DEMAND,
+    roles.REFERENCE_TORQUE,
+    roles.GEAR_TORQUE,
+    roles.MOTOR_SPEED,
+    roles.WHEEL_SPEED,
+    roles.BODY_ACCELERATION,
 )
 """What the metrics are computed from."""
 
@@ -75,15 +76,15 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         return sampled["time"]
 
     def T_gear() -> np.ndarray:
-        return sampled["plant.T_gear"]
+        return sampled[roles.GEAR_TORQUE]
 
     @kept
     def e() -> np.ndarray:
-        return added_torque(sampled["controller.T_driver"], sampled["controller.T_ref"])
+        return added_torque(sampled[roles.DEMAND], sampled[roles.REFERENCE_TORQUE])
 
     @kept
     def a_body() -> BandSpectrum:
-        return BandSpectrum(windowed(sampled["plant.a_body"]), T_s)
+        return BandSpectrum(windowed(sampled[roles.BODY_ACCELERATION]), T_s)
 
     @kept
     def swing() -> np.ndarray:
@@ -119,7 +120,7 @@ def evaluate(results: np.ndarray, manoeuvre: Manoeuvre, T_s: float = T_S) -> Met
         "crossing_time": lambda: crossing_time(rows, t_0),
         "response_delay": lambda: step().delay,
         "withheld_time": lambda: withheld_time(e()[_within(t(), t_0, t_0 + WITHHELD)], T_s, dT()),
-        "stationary_torque_change": lambda: stationary_change(sampled["controller.T_driver"], e(), T_s),
+        "stationary_torque_change": lambda: stationary_change(sampled[roles.DEMAND], e(), T_s),
         "jerk_rms_to_50_Hz": lambda: a_body().rms(TO_50_HZ, derivative=True),
         "added_torque_rms": lambda: float(np.sqrt(np.mean(windowed(e()) ** 2))),
         "added_torque_peak": lambda: float(np.abs(windowed(e())).max()),
@@ -210,7 +211,7 @@ def crossing_time(results: Rows, t_0: float) -> float:
     """
     t = results["time"]
     since = int(np.searchsorted(t, t_0 - 1e-9))
-    together = np.concatenate(([True], results["plant.T_gear"][since:] != 0.0, [False])).astype(np.int8)
+    together = np.concatenate(([True], results[roles.GEAR_TORQUE][since:] != 0.0, [False])).astype(np.int8)
     parts, meets = (np.flatnonzero(np.diff(together) == change) for change in (-1, 1))
     if not len(meets):
         return 0.0
@@ -234,16 +235,16 @@ def impact_speeds(results: Rows, t_0: float) -> np.ndarray:
     Raises:
         Absent: T_gear goes from one sign to the other without ever staying zero between them: there is no backlash.
     """
-    side = np.sign(results["plant.T_gear"]).astype(np.int8)
+    side = np.sign(results[roles.GEAR_TORQUE]).astype(np.int8)
     closes = np.flatnonzero((side[1:] != 0) & (side[1:] != side[:-1]))
     if _never_apart(side):
         raise Absent("the gear torque is never zero between both flanks: the plant shows no backlash")
     closes = closes[(results["time"][closes] >= t_0 - 1e-9) & (closes > 0) & (closes < len(side) - 2)]
     around = closes + np.array([[-1], [0], [1]])
-    before, speed, after = np.abs(results["plant.omega_1"][around] - results["plant.omega_2"][around])
+    before, speed, after = np.abs(results[roles.MOTOR_SPEED][around] - results[roles.WHEEL_SPEED][around])
     in_gap = (side[closes - 1] == 0) & (side[closes] == 0)
     growth = np.where(in_gap, speed - before, after - speed)
-    part = _part_of_interval(results["plant.T_gear"], closes)
+    part = _part_of_interval(results[roles.GEAR_TORQUE], closes)
     return speed + part * growth
 
 

@@ -16,8 +16,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from fmuloop.system import System
-from fmuloop.wiring import fit
+from fmuloop.wiring import Fit
 from toolground.atomic_files import alone, naming, remove
 from toolground.csv_file import write_rows
 from toolground.errors import UserError
@@ -130,7 +129,7 @@ def resumable(
     table: Table[Case, Answer],
     record: Path,
     run: Mapping[str, Any],
-    systems: Mapping[str, System],
+    fits: Mapping[str, Fit],
     inputs: Sequence[Path | None],
     results: Sequence[Path] = (),
     replace: bool = False,
@@ -142,7 +141,7 @@ def resumable(
         table: what its lines are; it belongs to the module that computes them, whose code distinguishes the campaign.
         record: the JSON file beside it that tells what makes the files.
         run: all that distinguishes the campaign, but for the versions of PACKAGES.
-        systems: that run, by their names.
+        fits: the systems that run, by their names.
         inputs: files beside the FMUs that it reads.
         results: other files that it will write, as far as their names are known.
         replace: whether results of another campaign may be replaced.
@@ -160,7 +159,6 @@ def resumable(
             if not replace:
                 raise
             remove(path)
-        fits = {name: fit(system) for name, system in systems.items()}
         write_record(record, run, fits, [path], inputs)
         made = Campaign(CaseArchive(path, table), [path], content(run, fits, [], inputs))
         try:

@@ -11,28 +11,29 @@ from driverecords.quantities import QUANTITIES, aliases
 from fmuloop.errors import WiringError
 from fmuloop.experiment import require_steps
 from fmuloop.interface import Interface
-from fmuloop.wiring import fit, out_of_bounds, require
+from fmuloop.wiring import out_of_bounds, require
 from toolground.collected_warnings import warn_once
 
+from ..loop import roles
 from ..loop.places import T_S
-from ..loop.settings import Settings, loop
+from ..loop.resolved import ResolvedLoop
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.prbs import binary_torque
-from ..manoeuvres.road_load import RoadLoad, torque_limit
+from ..manoeuvres.road_load import RoadLoad
 from ..manoeuvres.speed_following import SIN_MAX
 from ..metrics.evaluate import at_samples
 from .simulate import start
 
-MEASURED_WHEELS = "plant.T_rim"
+MEASURED_WHEELS = roles.RIM_TORQUE
 """What measurement wheels show; a drive of a plant that has no such output is recorded without."""
 
 RECORDED = {
-    "omega_1": "motor.omega_1_meas",
-    "T_mot": "motor.T_mot_est",
-    "T_ref": "controller.T_ref",
-    "omega_wheel": "can.omega_2_can",
-    "valid": "can.valid",
-    "counter": "can.counter",
+    "omega_1": roles.MEASURED_MOTOR_SPEED,
+    "T_mot": roles.MOTOR_TORQUE_ESTIMATE,
+    "T_ref": roles.REFERENCE_TORQUE,
+    "omega_wheel": roles.BUS_WHEEL_SPEED,
+    "valid": roles.BUS_VALID,
+    "counter": roles.BUS_COUNTER,
     "T_wheel": MEASURED_WHEELS,
 }
 """The quantities of a test drive beside the time, and the output `instance.variable` from which each is recorded."""
@@ -107,7 +108,7 @@ class PlannedDrive(NamedTuple):
     slope: float
 
 
-def planned(settings: Settings, demand: Mapping[str, Any], v_0: float) -> PlannedDrive:
+def planned(resolved: ResolvedLoop, demand: Mapping[str, Any], v_0: float) -> PlannedDrive:
     """A test drive of a loop under a pseudo-random binary torque.
 
     Args:
@@ -117,15 +118,14 @@ def planned(settings: Settings, demand: Mapping[str, Any], v_0: float) -> Planne
     Raises:
         WiringError: the FMUs do not have what is recorded, or nobody can drive so.
     """
-    fitted = fit(loop(settings))
-    require_sensors(fitted.interfaces)
+    settings = resolved.settings
+    require_sensors(resolved.fit.interfaces)
     require_steps(demand["duration"], settings.step_size)
-    T_max = torque_limit(fitted.interfaces["motor"], settings.parameters)
-    require_demand(demand["mean"], demand["amplitude"], demand["clock"], T_max)
-    load = RoadLoad.of_plant(fitted.interfaces["plant"], settings.parameters, settings.road_load)
+    require_demand(demand["mean"], demand["amplitude"], demand["clock"], resolved.T_max)
+    load = RoadLoad.of(resolved)
     slope = holding_slope(load, demand["mean"], v_0)
     manoeuvre = binary_torque("prbs", **demand, v_0=v_0, slope=slope)
-    require(out_of_bounds(fitted, {**start(manoeuvre), **settings.parameters}))
+    require(out_of_bounds(resolved.fit, {**start(manoeuvre), **settings.parameters}))
     return PlannedDrive(manoeuvre, load, slope)
 
 

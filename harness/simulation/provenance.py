@@ -5,15 +5,13 @@ import platform
 import subprocess
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from fmuloop import row_layout
-from fmuloop.system import System
-from fmuloop.wiring import Fit, fit
+from fmuloop.wiring import Fit
 from toolground.atomic_files import alone, as_before_if_stopped, remove, replaceable, write_text
 from toolground.child_process import output_of
 from toolground.command_line import command_line
@@ -35,9 +33,7 @@ class Made:
         found: what the record tells of the runs beside.
     """
 
-    def __init__(
-        self, record: Path, systems: Mapping[str, System], require: Callable[[], None], kept: ExitStack
-    ) -> None:
+    def __init__(self, record: Path, require: Callable[[], None], kept: ExitStack) -> None:
         """Args:
         require: refuses if there are results of another run.
         kept: what lasts until the record is written.
@@ -45,16 +41,10 @@ class Made:
         self.files: list[Path] = []
         self.found: dict[str, Any] = {}
         self._record = record
-        self._systems = systems
         self._require = require
         self._kept = kept
         self.begun = False
         self._new_folders: set[Path] = set()
-
-    @cached_property
-    def fits(self) -> dict[str, Fit]:
-        """The systems that run, by their names."""
-        return {name: fit(system) for name, system in self._systems.items()}
 
     def begin(self, *others: Path) -> None:
         """From now on files are replaced. Their records go first: one that is killed leaves none that is not theirs.
@@ -87,7 +77,7 @@ class Made:
 def recorded(
     record: Path,
     run: Mapping[str, Any],
-    systems: Mapping[str, System],
+    fits: Mapping[str, Fit],
     inputs: Sequence[Path | None],
     results: Sequence[Path] = (),
     replace: bool = False,
@@ -98,7 +88,7 @@ def recorded(
     Args:
         record: the JSON file beside the results.
         run: all that distinguishes it.
-        systems: that run, by their names.
+        fits: the systems that run, by their names.
         inputs: files beside the FMUs that it reads.
         results: files that it will write, as far as their names are known.
         replace: whether results of another run may be replaced.
@@ -114,11 +104,11 @@ def recorded(
 
     require()
     with ExitStack() as kept:
-        made = Made(record, systems, require, kept)
+        made = Made(record, require, kept)
         try:
             with as_before_if_stopped():
                 yield made
-                write_record(record, run, made.fits, made.files, inputs, made.found)
+                write_record(record, run, fits, made.files, inputs, made.found)
         except BaseException as stop:
             made.remove_empty_folders()
             if isinstance(stop, KeyboardInterrupt):

@@ -3,11 +3,13 @@
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
+from typing import TypeVar
 
 from fmuloop.system import System
 from toolground.digest import digest
 from toolground.errors import UserError
 
+from ..loop.resolved import ResolvedLoop
 from ..loop.settings import Settings
 
 
@@ -16,10 +18,14 @@ def absolute(block: str) -> str:
     return str(Path(block).absolute()) if Path(block).suffix == ".fmu" else block
 
 
-def anywhere(settings: Settings) -> Settings:
-    """The settings with whole paths, so that any process can make the runs."""
+L = TypeVar("L", ResolvedLoop, Settings)
+
+
+def anywhere(loop: L) -> L:
+    """The same with whole paths, so that any process can make the runs."""
+    settings = loop.settings if isinstance(loop, ResolvedLoop) else loop
     blocks = {place: absolute(str(block)) for place, block in settings.blocks.items()}
-    return settings.replace(**blocks, folder=settings.folder.absolute())  # type: ignore[arg-type]
+    return loop.replace(**blocks, folder=settings.folder.absolute())  # type: ignore[arg-type]
 
 
 def digests(systems: Iterable[System]) -> dict[Path, str]:

@@ -13,18 +13,20 @@ import numpy as np
 from fmuloop.argument_kinds import require_kind
 from fmuloop.errors import RunEnded, SimulationError, WiringError
 from fmuloop.experiment import Experiment, Source, require_steps
+from fmuloop.interface import Interface
 from fmuloop.results import Results
 from fmuloop.runs import run
-from fmuloop.system import Port, System
-from fmuloop.wiring import fit
+from fmuloop.system import Port
+from fmuloop.wiring import Fit
 from toolground.collected_warnings import warn_once
 
+from ..loop import roles
 from ..loop.arguments import A_MANOEUVRE
-from ..loop.built_fmus import frequency_of_plant, require_there
 from ..loop.parameter_words import said
-from ..loop.places import INPUTS, PARAMETERS, T_S, NameOrFile
-from ..loop.settings import Changes, Settings, own_frequency, running
-from ..loop.settings import settings as settings_of
+from ..loop.places import T_S, NameOrFile
+from ..loop.resolved import ResolvedLoop, as_given
+from ..loop.settings import Changes, Settings
+from ..loop.topology import ONE_UNIT, Topology, of_unit
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal
@@ -40,7 +42,7 @@ MOSTLY = 0.5
 
 
 def simulate(
-    manoeuvre: Manoeuvre, settings: Settings | NameOrFile | None = None, **changes: Unpack[Changes]
+    manoeuvre: Manoeuvre, settings: ResolvedLoop | Settings | NameOrFile | None = None, **changes: Unpack[Changes]
 ) -> Results:
     """Drives the closed loop through a manoeuvre.
 
@@ -51,9 +53,9 @@ def simulate(
         results["plant.T_gear"]  # in N.m, a sample for each of results["time"]
 
     Args:
-        settings: of the run, or only the name or file of its plant; by default those of `Settings()`.
+        settings: of the run, or its loop, or only the name or file of its plant; by default those of `Settings()`.
         changes: fields of the settings that are to be others: plant, controller, motor, can, control, parameters,
-            frequency, step_size, scheme, seed, folder, build, mapping, limits, tolerance.
+            frequency, step_size, scheme, seed, folder, build, mapping, limits, tolerance, topology.
 
     Returns:
         Structured array with the units of its columns: a row for each instant k * step_size, k = 0, 1, ..., with
@@ -67,12 +69,13 @@ def simulate(
             crashed or hung.
     """
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
-    made = running(settings_of(settings, **changes))
-    given = _checked(start(manoeuvre, made.seed) | dict(made.parameters))
+    resolved = as_given(settings, **changes)
+    made = resolved.runs
+    given = _checked(start(manoeuvre, made.seed, made.topology) | dict(made.parameters))
     require_steps(manoeuvre.duration, made.step_size)
     _warn(manoeuvre, given, made.step_size)
-    system = require_there(made)
-    inputs, offered = signals(manoeuvre, made.control, made.step_size), _offered(manoeuvre, system)
+    inputs = signals(manoeuvre, made.control, made.step_size, made.topology)
+    offered = _offered(manoeuvre, resolved.fit, made.topology)
     experiment = Experiment(
         duration=manoeuvre.duration,
         step_size=made.step_size,
@@ -83,7 +86,7 @@ def simulate(
         label=manoeuvre.name,
     )
     try:
-        results = run(system, experiment)
+        results = run(resolved.fit, experiment)
     except SimulationError as refusal:
         if {"plant.mu", "plant.g_muL", "plant.g_muR"}.isdisjoint(made.parameters) or "omega_wheel_" not in str(refusal):
             raise
@@ -96,20 +99,21 @@ def simulate(
             raise RunEnded(f"{results.ended}: there is nothing to evaluate")
         damping = f"with {made.controller_name}" if made.control else "without damping"
         warn_once(f"{results.ended} of {manoeuvre.duration:g} s, in {manoeuvre.name} {damping}: it has no metrics")
-    told = {name.partition(".")[2]: value for name, value in given.items() if name.startswith("controller.")}
-    results.frequency = made.frequency or own_frequency(told) or frequency_of_plant(made)
+    results.frequency = resolved.frequency
     if made.control:
-        _warn_of_fallback(results, system, f"{manoeuvre.name} on {made.plant_name}")
+        for unit in made.topology.units:
+            controller = resolved.fit.interfaces[unit.instance("controller")]
+            _warn_of_fallback(of_unit(results, unit), controller, f"{manoeuvre.name} on {unit.named(made.plant_name)}")
     return results
 
 
-def _warn_of_fallback(results: Results, system: System, run: str) -> None:
+def _warn_of_fallback(results: Results, controller: Interface, run: str) -> None:
     """Says that the control let go for most of a run, and for which cause, if the controller tells."""
-    variables = fit(system).interfaces["controller"].variables
+    variables = controller.variables
     types = (variables[name].declaredType for name in ("status", "cause") if name in variables)
     items = [[(int(item.value or 0), str(item.name)) for item in of.items or ()] for of in types if of]
     fallback = [number for number, word in items[0] if word == "fallback"] if len(items) > 1 else []
-    cause = results["controller.cause"][np.isin(results["controller.status"], fallback)].astype(int) if fallback else []
+    cause = results[roles.CAUSE][np.isin(results[roles.STATUS], fallback)].astype(int) if fallback else []
     if len(cause) > MOSTLY * len(results):
         why = dict(items[1]).get(int(np.bincount(cause).argmax()))
         share = 100.0 * len(cause) / len(results)
@@ -118,8 +122,8 @@ def _warn_of_fallback(results: Results, system: System, run: str) -> None:
 
 def _warn(manoeuvre: Manoeuvre, given: Mapping[str, float], step_size: float) -> None:
     """Names what makes a run that is hardly meant."""
-    if given["plant.v_0"] > 0.0 and given["plant.T_0"] != manoeuvre.T_0:
-        LOG.warning(said("torque", T_0=float(given["plant.T_0"]), demand=float(manoeuvre.T_0)))
+    if given[roles.FIRST_SPEED] > 0.0 and given[roles.FIRST_TORQUE] != manoeuvre.T_0:
+        LOG.warning(said("torque", T_0=float(given[roles.FIRST_TORQUE]), demand=float(manoeuvre.T_0)))
     if step_size > T_S * (1.0 + 1e-9):
         warn_once(
             f"the communication step of {step_size * 1e3:g} ms is longer than the {T_S * 1e3:g} ms between samples of "
@@ -140,7 +144,9 @@ def _checked(parameters: dict[str, Any]) -> dict[str, Any]:
 
 
 @lru_cache(1)
-def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) -> Mapping[str, Source]:
+def signals(
+    manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0, topology: Topology = ONE_UNIT
+) -> Mapping[str, Source]:
     """What the loop is given from outside during a manoeuvre; runs that are given the same one are sampled once where
     they are made in lanes.
 
@@ -148,20 +154,22 @@ def signals(manoeuvre: Manoeuvre, control: bool = True, step_size: float = 0.0) 
     `step_size` s; it gets what they are in the middle of the step, as straight lines are on average. Held from its
     beginning, they would be late by half a step, and how a car comes to rest depends on that.
     """
-    given = {port.name: _value(port, manoeuvre, enable=control) for port in INPUTS}
+    given = {port.name: _value(port, manoeuvre, enable=control) for port in topology.inputs}
     ahead = {name: _ahead(value, 0.5 * step_size) for name, value in given.items() if name.startswith("plant.")}
     return MappingProxyType(given | ahead)
 
 
-def _offered(manoeuvre: Manoeuvre, system: System) -> dict[str, Source]:
+def _offered(manoeuvre: Manoeuvre, fitted: Fit, topology: Topology = ONE_UNIT) -> dict[str, Source]:
     """What a bus tells beside, where the controller has an input for it and no block of the loop tells it."""
     if not manoeuvre.offered:
         return {}
-    fitted = fit(system)
     taken = {connection.target for connection in fitted.system.connections}
-    has = fitted.interfaces["controller"].variables
-    given = {f"controller.{name}": signal for name, signal in manoeuvre.offered.items() if name in has}
-    return {target: signal for target, signal in given.items() if target not in taken}
+    return {
+        target: signal
+        for controller in topology.instances("controller")
+        for name, signal in manoeuvre.offered.items()
+        if name in fitted.interfaces[controller].variables and (target := f"{controller}.{name}") not in taken
+    }
 
 
 def _ahead(signal: Signal, time: float) -> Signal:
@@ -169,10 +177,10 @@ def _ahead(signal: Signal, time: float) -> Signal:
     return lambda t: signal(t + time)
 
 
-def start(manoeuvre: Manoeuvre, seed: int = 1) -> dict[str, float]:
+def start(manoeuvre: Manoeuvre, seed: int = 1, topology: Topology = ONE_UNIT) -> dict[str, float]:
     """Parameters with which the loop starts a manoeuvre."""
     road = {f"plant.{name}": value for name, value in manoeuvre.road.items()}
-    return {port.name: _value(port, manoeuvre, seed=seed) for port in PARAMETERS} | road
+    return {port.name: _value(port, manoeuvre, seed=seed) for port in topology.parameters} | road
 
 
 def _value(port: Port, manoeuvre: Manoeuvre, **settings: Any) -> Any:

@@ -4,6 +4,7 @@ from math import isnan
 
 import numpy as np
 
+from ..loop import roles
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.declaration import Absent
 from ..metrics.evaluate import at_samples, evaluate
@@ -57,7 +58,7 @@ def in_words(metrics: Metrics | None, *names: str) -> str:
 
 def gap(run: np.ndarray, label: str = "") -> Spans:
     """From and to when in s the gear torque is zero, as it is while the teeth are apart."""
-    zero = np.concatenate(([False], run["plant.T_gear"] == 0.0, [False]))
+    zero = np.concatenate(([False], run[roles.GEAR_TORQUE] == 0.0, [False]))
     edges = np.flatnonzero(zero[1:] != zero[:-1])
     begin, last = run["time"][edges[::2]], run["time"][edges[1::2] - 1]
     return Spans(begin, np.maximum(last, begin + interval(run)), label)
@@ -74,7 +75,7 @@ def marks_of_step(
     if metrics is None:
         return []
     sampled = at_samples(run)
-    t, T_gear = sampled["time"], sampled["plant.T_gear"]
+    t, T_gear = sampled["time"], sampled[roles.GEAR_TORQUE]
     try:
         dT = height_of_step(manoeuvre, t)
         step = response(t, T_gear, manoeuvre.t_0, dT)

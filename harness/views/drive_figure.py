@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..loop import roles
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..metrics.band_filter import envelope
 from .annotations import GAP, gap, in_words, metrics_of
@@ -52,21 +53,21 @@ def _envelopes(runs: Runs, manoeuvre: Manoeuvre) -> Panel:
     curves, looks = list[Part](), looks_of(runs)
     for name, run in runs.items():
         label = ", ".join(filter(None, (name, in_words(metrics_of(run, manoeuvre), "gear_torque_rms"))))
-        curves += Line(envelope_of("plant.T_gear"), label, *looks[name]).of(run)
+        curves += Line(envelope_of(roles.GEAR_TORQUE), label, *looks[name]).of(run)
     return Panel("gear torque, 5-50 Hz\nenvelope in N·m", curves, bounds=(0.0, None), columns=2)
 
 
 def reversal(undamped: np.ndarray, window: tuple[float, float]) -> tuple[float, float] | None:
     """About the change of the sign of the demand, within a window, after which the gear torque swings most; None if
     there is none."""
-    t, side = undamped["time"], np.sign(undamped["controller.T_driver"])
+    t, side = undamped["time"], np.sign(undamped[roles.DEMAND])
     loaded = np.flatnonzero(side)
     turns = loaded[1:][np.diff(side[loaded]) != 0]
     turns = turns[(t[turns] >= window[0] - 1e-9) & (t[turns] <= window[1] + 1e-9)]
     if not len(turns):
         return None
     T_s = interval(undamped)
-    swing = envelope(undamped["plant.T_gear"], T_s)
+    swing = envelope(undamped[roles.GEAR_TORQUE], T_s)
     after = round(AROUND[1] / T_s)
     turn = max(turns, key=lambda k: float(swing[k : k + after].max()))
     return max(float(t[turn]) + AROUND[0], window[0]), min(float(t[turn]) + AROUND[1], window[1])

@@ -8,6 +8,7 @@ import numpy as np
 
 from driverecords.file_units import FileUnit
 
+from ..loop import roles
 from ..metrics.declaration import Absent
 from ..metrics.oscillation import amplitude
 from ..metrics.spectrum import band_rms
@@ -70,19 +71,19 @@ def plot_replay(
 def speeds(run: np.ndarray, recorded: tuple[np.ndarray, np.ndarray], label: str, v: FileUnit) -> Panel:
     """The speed of a ride against the recorded one."""
     curve = Curve(recorded[0], recorded[1] / v.factor, "recorded", GREY, width=2.5)
-    return Panel(f"speed {v}", [curve, *Line(column("plant.v", 1.0 / v.factor), label, BLUE).of(run)])
+    return Panel(f"speed {v}", [curve, *Line(column(roles.BODY_SPEED, 1.0 / v.factor), label, BLUE).of(run)])
 
 
 def swings(runs: Runs, looks: Mapping[str, Look], unit: FileUnit) -> Panel:
     """The envelope of the gear torque of all rides."""
-    signal = envelope_of("plant.T_gear", 1.0 / unit.factor)
+    signal = envelope_of(roles.GEAR_TORQUE, 1.0 / unit.factor)
     curves = [c for name, run in runs.items() for c in Line(signal, _with_rms(name, run, unit), *looks[name]).of(run)]
     return Panel(f"gear torque, 5-50 Hz\nenvelope {unit}", curves, bounds=(0.0, None), columns=2)
 
 
 def torques(runs: Runs, looks: Mapping[str, Look], unit: FileUnit, closer: tuple[float, float] | None = None) -> Panel:
     """The gear torque of rides, with the demand of the last one and, in a close-up, when its teeth are apart."""
-    T_gear, T_driver = (column(name, 1.0 / unit.factor) for name in ("plant.T_gear", "controller.T_driver"))
+    T_gear, T_driver = (column(name, 1.0 / unit.factor) for name in (roles.GEAR_TORQUE, roles.DEMAND))
     last = list(runs.values())[-1]
     curves = [curve for name, run in runs.items() for curve in Line(T_gear, name, *looks[name]).of(run)]
     curves += Line(T_driver, "demand", BLACK, DOTTED, 1.1).of(last)
@@ -93,7 +94,7 @@ def torques(runs: Runs, looks: Mapping[str, Look], unit: FileUnit, closer: tuple
 def _with_rms(name: str, run: np.ndarray, unit: FileUnit) -> str:
     """The name of a ride and the rms of its gear torque from 5 to 50 Hz."""
     try:
-        rms = band_rms(run["plant.T_gear"], interval(run))
+        rms = band_rms(run[roles.GEAR_TORQUE], interval(run))
     except Absent:
         return name
     return f"{name}, rms {rms / unit.factor:.3g} {unit.printed}"
@@ -119,4 +120,4 @@ def roughest(run: np.ndarray) -> list[tuple[float, float]]:
 
 def swinging(run: np.ndarray) -> np.ndarray:
     """How far the gear torque swings about the demand, in N.m."""
-    return amplitude(run["plant.T_gear"] - run["controller.T_driver"], interval(run))
+    return amplitude(run[roles.GEAR_TORQUE] - run[roles.DEMAND], interval(run))

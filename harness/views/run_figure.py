@@ -12,6 +12,7 @@ from fmuloop.results import Results
 from toolground.errors import UserError
 from toolground.plain_text import printed
 
+from ..loop import roles
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .annotations import AFTER, BEFORE, GAP, gap, in_words, marks_of_step, metrics_of
 from .colours import BLACK, GREEN, GREY
@@ -35,13 +36,13 @@ from .signal_lines import (
 )
 
 ALL_SPEEDS = Row(
-    SPEED_LABEL, (Line(column("can.omega_2_can"), r"$i\,\omega_{wheel}$ over CAN", GREEN, DASH_DOT, 0.8), *SPEEDS)
+    SPEED_LABEL, (Line(column(roles.BUS_WHEEL_SPEED), r"$i\,\omega_{wheel}$ over CAN", GREEN, DASH_DOT, 0.8), *SPEEDS)
 )
 ENVELOPES = Row(
     "its envelope,\n5-50 Hz, in rad/s",
     (
-        Line(envelope_of("plant.omega_2"), r"$i\,\omega_{wheel}$, wheels", GREY, width=1.8),
-        Line(envelope_of("plant.omega_1"), r"$\omega_1$, motor", width=0.9),
+        Line(envelope_of(roles.WHEEL_SPEED), r"$i\,\omega_{wheel}$, wheels", GREY, width=1.8),
+        Line(envelope_of(roles.MOTOR_SPEED), r"$\omega_1$, motor", width=0.9),
     ),
 )
 VEHICLE = Row("speed of the\nvehicle in km/h", (Line(column("plant.v", KMH)),))
@@ -95,7 +96,7 @@ def plot(
     draw(drawing, path.with_suffix(""), options)
 
 
-COMPARED = ("plant.T_gear", "controller.T_ref", "plant.omega_1", "plant.a_body")
+COMPARED = (roles.GEAR_TORQUE, roles.REFERENCE_TORQUE, roles.MOTOR_SPEED, roles.BODY_ACCELERATION)
 """Signals of several runs, unless others are named."""
 
 
@@ -114,9 +115,7 @@ def signals_drawing(runs: Runs, names: Iterable[str], title: str, options: Figur
 def about_the_step(run: np.ndarray) -> tuple[float, float]:
     """From and to when in s the demand makes its one step, if it makes one, else the whole run."""
     t = run["time"]
-    changes = (
-        t[1:][np.diff(run["controller.T_driver"]) != 0.0] if "controller.T_driver" in (run.dtype.names or ()) else t[:0]
-    )
+    changes = t[1:][np.diff(run[roles.DEMAND]) != 0.0] if roles.DEMAND in (run.dtype.names or ()) else t[:0]
     if not len(changes) or changes[-1] - changes[0] > SHORT:
         return float(t[0]), float(t[-1])
     return max(float(changes[0]) - BEFORE, float(t[0])), min(float(changes[0]) + AFTER, float(t[-1]))

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..loop import roles
 from ..metrics.band_filter import derivative, envelope
 from .colours import BLACK, BLUE, GREEN, GREY, OLIVE, ORANGE, PURPLE, SKY, VERMILION, WINE
 from .panels import DASH_DOT, DASHED, DOTTED, SOLID, Curve, Dashes, Panel, Part, seen
@@ -75,12 +76,12 @@ def interval(run: np.ndarray) -> float:
 
 
 WHEEL = Signal(
-    ("plant.omega_wheel_L", "plant.omega_wheel_R"),
-    lambda run: 0.5 * (run["plant.omega_wheel_L"] + run["plant.omega_wheel_R"]),
+    (roles.WHEELS[0], roles.WHEELS[1]),
+    lambda run: 0.5 * (run[roles.WHEELS[0]] + run[roles.WHEELS[1]]),
 )
 """Mean speed of both driven wheels, wheel side."""
 
-JERK = Signal(("plant.a_body",), lambda run: derivative(run["plant.a_body"], interval(run)))
+JERK = Signal((roles.BODY_ACCELERATION,), lambda run: derivative(run[roles.BODY_ACCELERATION], interval(run)))
 """Of the body, up to 50 Hz."""
 
 
@@ -88,10 +89,10 @@ def _over_ratio(run: np.ndarray) -> np.ndarray:
     """The torque at the rims over the motor speed's ratio to that of the wheels, which two measures of them show."""
     wheel = WHEEL.of(run)
     turned = np.dot(wheel, wheel)
-    return run["plant.T_rim"] * (turned / np.dot(run["plant.omega_2"], wheel) if turned else np.nan)
+    return run[roles.RIM_TORQUE] * (turned / np.dot(run[roles.WHEEL_SPEED], wheel) if turned else np.nan)
 
 
-T_RIM = Signal(("plant.T_rim", "plant.omega_2", *WHEEL.columns), _over_ratio)
+T_RIM = Signal((roles.RIM_TORQUE, roles.WHEEL_SPEED, *WHEEL.columns), _over_ratio)
 """The torque at the rims as seen from the motor."""
 
 
@@ -128,18 +129,18 @@ class Row(NamedTuple):
         return Panel(self.label, [*behind, *(curve for line in self.lines for curve in line.of(run, window))], **more)
 
 
-DEMAND = Line(column("controller.T_driver"), r"$T_{driver}$, demand", BLACK, DOTTED, 1.1)
-T_GEAR = Line(column("plant.T_gear"), r"$T_{gear}$", VERMILION, SOLID, 1.6)
+DEMAND = Line(column(roles.DEMAND), r"$T_{driver}$, demand", BLACK, DOTTED, 1.1)
+T_GEAR = Line(column(roles.GEAR_TORQUE), r"$T_{gear}$", VERMILION, SOLID, 1.6)
 
-T_MOT = Line(column("motor.T_mot"), r"$T_{mot}$, motor", GREY, SOLID, 1.8)
+T_MOT = Line(column(roles.MOTOR_TORQUE), r"$T_{mot}$, motor", GREY, SOLID, 1.8)
 
 GEAR_TORQUE = Row(
     "gear torque\nin N·m",
-    (T_GEAR, Line(column("controller.T_gear_hat"), r"$\hat T_{gear}$, estimate", BLUE, DASHED, 0.9), DEMAND),
+    (T_GEAR, Line(column(roles.GEAR_TORQUE_ESTIMATE), r"$\hat T_{gear}$, estimate", BLUE, DASHED, 0.9), DEMAND),
 )
 SPEEDS = (
-    Line(column("plant.omega_2"), r"$i\,\omega_{wheel}$, wheels", GREY, SOLID, 1.8),
-    Line(column("plant.omega_1"), r"$\omega_1$, motor", BLACK, SOLID, 0.9),
+    Line(column(roles.WHEEL_SPEED), r"$i\,\omega_{wheel}$, wheels", GREY, SOLID, 1.8),
+    Line(column(roles.MOTOR_SPEED), r"$\omega_1$, motor", BLACK, SOLID, 0.9),
 )
 SPEED_LABEL = "speed in rad/s,\nmotor side"
 ACCELERATION = Row("acceleration of\nthe body in m/s²", (Line(column("plant.a_body")),))
@@ -148,8 +149,8 @@ MOTOR_TORQUE = Row(
     "motor torque\nin N·m",
     (
         T_MOT,
-        Line(column("controller.T_ref"), r"$T_{ref}$, to the motor", BLUE, SOLID, 0.9),
-        Line(column("controller.T_damp"), r"$T_{damp}$, damping", GREEN, DASH_DOT, 1.0),
+        Line(column(roles.REFERENCE_TORQUE), r"$T_{ref}$, to the motor", BLUE, SOLID, 0.9),
+        Line(column(roles.DAMPING_TORQUE), r"$T_{damp}$, damping", GREEN, DASH_DOT, 1.0),
         DEMAND,
     ),
 )

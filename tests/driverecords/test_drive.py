@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from driveline.harness.manoeuvres.road_load import RoadLoad, Track, torque_limit
+from driveline.harness.loop.resolved import as_given
+from driveline.harness.manoeuvres.road_load import RoadLoad, Track
 from driveline.harness.manoeuvres.speed_following import drive, needed_force
 from driverecords.drive import read_drive
 from driverecords.source import RecordingError
-from fmuloop.interface import Interface
 from tests import ROOT
 
 HEADER = "Time [s],Velocity [km/h],Elevation [m],Throttle [%],Motor Torque [Nm]"
@@ -180,24 +180,23 @@ def test_a_steady_climb_has_its_slope(write):
 
 
 def test_the_brakes_know_the_vehicle_as_the_run_sets_it(built):
-    given = {"plant.m": 1900.0, "can.r": 0.4}
-    plant = Interface(built / "ValidationVehicle.fmu")
-    assert RoadLoad.of_plant(plant, given) == replace(RoadLoad.of_plant(plant), m=1900.0)
+    vehicle = as_given("ValidationVehicle", folder=built, build="python")
+    given = vehicle.with_parameters({"plant.m": 1900.0, "can.r": 0.4})
+    assert RoadLoad.of(given) == replace(RoadLoad.of(vehicle), m=1900.0)
 
 
 def test_the_limit_is_that_of_the_motor_as_the_run_sets_it(built):
-    motor = Interface(built / "MotorTorqueLoop.fmu")
-    assert torque_limit(motor) == 180.0
-    assert torque_limit(motor, {"motor.T_max": 250.0, "controller.T_max": 90.0}) == 250.0
-    assert torque_limit(Interface(built / "WheelSpeedCan.fmu")) == math.inf
+    loop = as_given(folder=built, build="python")
+    assert loop.T_max == 180.0
+    assert loop.with_parameters({"motor.T_max": 250.0, "controller.T_max": 90.0}).T_max == 250.0
+    assert loop.value("can.T_max", math.inf) == math.inf
 
 
 def test_what_is_mapped_is_in_the_units_of_the_loop(built):
-    file = built / "ValidationVehicle.fmu"
     # as if somebody else had given the mass in tonnes
-    plant = Interface(file)
-    plant.factors["m"] = 1000.0
-    assert RoadLoad.of_plant(plant).m == 1000.0 * RoadLoad.of_plant(Interface(file)).m
+    theirs, ours = (as_given("ValidationVehicle", folder=built, build="python") for _ in range(2))
+    theirs.fit.interfaces["plant"].factors["m"] = 1000.0
+    assert RoadLoad.of(theirs).m == 1000.0 * RoadLoad.of(ours).m
 
 
 @pytest.mark.skipif(not TRIP.exists(), reason=f"recorded drive {TRIP} is not on this machine")

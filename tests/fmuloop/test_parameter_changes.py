@@ -9,6 +9,7 @@ import pytest
 
 from docs.studies.bound import bounded
 from driveline.harness.commands.cli import main
+from driveline.harness.loop.resolved import resolve
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.simulate import simulate
@@ -166,7 +167,7 @@ def test_where_nothing_runs_in_time_a_change_is_refused(native: Path) -> None:
     require_constant({"controller.k_d": 1.0}, "an SSP")
     changing = Settings(folder=native.parent).with_parameters({"controller.k_d@1": 1.0})
     with pytest.raises(WiringError, match=r"controller\.k_d@1: the parameters of a linear loop have one value"):
-        analyse({"TwoMassDriveline": changing})
+        analyse({"TwoMassDriveline": resolve(changing)})
     with pytest.raises(WiringError, match=r"controller\.k_d@1: the parameters of a bound have one value"):
         bounded("tipin15", changing)
 

@@ -7,6 +7,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from fmuloop.wiring import fit
 from toolground.optional_packages import required
 from toolground.progress import progress
 
@@ -47,10 +48,10 @@ def tune(
         MissingExtra: the package cma is not installed.
     """
     known = table([parameter.name for parameter in space.searched])
-    systems = {plant: evaluation.system(plant, evaluation.controller) for plant in PLANTS}
+    fits = {plant: fit(evaluation.system(plant, evaluation.controller)) for plant in PLANTS}
     run, file, record = distinguishing(evaluation, space, seed), folder / EVALUATIONS, folder / RECORD
     with (
-        resumable(file, known, record, run, systems, inputs, replace=replace) as resumed,
+        resumable(file, known, record, run, fits, inputs, replace=replace) as resumed,
         evaluation.opened(workers, executor) as costs_of,
         progress(evaluations, "searching") as done,
     ):

@@ -1,11 +1,17 @@
-"""The picture of the loop: where its blocks stand, where their connectors are, and how the lines between them run.
+"""The picture of a loop, laid out from its connections: x to the right and y up, as the standard has it.
 
-As in docs/figures/loop.svg, with the source on the left; x to the right and y up, as the standard has it.
+A block stands to the right of those that feed it, inputs on the left and outputs on the right of each. A line to the
+next column bends in the gap between both, one over more columns runs above all blocks, and one back below them.
 """
 
+from collections import defaultdict
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from .loop_with_source import SOURCE
+from fmuloop.system import Connection
+
+WIDTH, GAP, PITCH = 150.0, 130.0, 22.0
+"""Of a box, between columns, and between connectors and lines that run side by side."""
 
 
 class Box(NamedTuple):
@@ -24,63 +30,79 @@ class Place(NamedTuple):
     y: float
 
 
-BOXES = {
-    SOURCE: Box(20.0, 160.0, 170.0, 260.0),
-    "controller": Box(270.0, 160.0, 440.0, 260.0),
-    "motor": Box(540.0, 160.0, 690.0, 260.0),
-    "plant": Box(790.0, 160.0, 980.0, 260.0),
-    "can": Box(540.0, 20.0, 690.0, 90.0),
-}
+class Layout:
+    """Where blocks and connectors stand, and how the lines run.
 
-PLACES = {
-    f"{SOURCE}.T_driver": Place(1.0, 0.7),
-    f"{SOURCE}.enable": Place(1.0, 0.3),
-    f"{SOURCE}.T_brake": Place(0.4, 1.0),
-    f"{SOURCE}.slope": Place(0.7, 1.0),
-    "controller.T_driver": Place(0.0, 0.7),
-    "controller.enable": Place(0.0, 0.3),
-    "controller.T_ref": Place(1.0, 0.7),
-    "controller.T_mot_est": Place(1.0, 0.4),
-    "controller.omega_1_meas": Place(1.0, 0.2),
-    "controller.omega_2_can": Place(0.75, 0.0),
-    "controller.valid": Place(0.5, 0.0),
-    "controller.counter": Place(0.25, 0.0),
-    "motor.T_ref": Place(0.0, 0.7),
-    "motor.T_mot_est": Place(0.0, 0.4),
-    "motor.omega_1_meas": Place(0.0, 0.2),
-    "motor.T_mot": Place(1.0, 0.7),
-    "motor.omega_1": Place(1.0, 0.3),
-    "plant.T_mot": Place(0.0, 0.7),
-    "plant.omega_1": Place(0.0, 0.3),
-    "plant.T_brake": Place(0.65, 1.0),
-    "plant.slope": Place(0.35, 1.0),
-    "plant.omega_wheel_L": Place(0.35, 0.0),
-    "plant.omega_wheel_R": Place(0.65, 0.0),
-    "can.omega_wheel_L": Place(1.0, 0.7),
-    "can.omega_wheel_R": Place(1.0, 0.3),
-    "can.omega_2_can": Place(0.0, 0.75),
-    "can.valid": Place(0.0, 0.5),
-    "can.counter": Place(0.0, 0.25),
-}
+    Attributes:
+        boxes: of the instances.
+        places: of the connectors `instance.variable`.
+        corners: of the line of a connection, from its source on.
+    """
 
-ABOVE = {"plant.T_brake": 295.0, "plant.slope": 277.0}
-"""Height at which lines run that come from the top of a box and go to the top of another."""
+    def __init__(self, instances: Sequence[str], connections: Sequence[Connection]) -> None:
+        columns = _columns(instances, connections)
+        sides = [dict.fromkeys(c.target for c in connections), dict.fromkeys(c.source for c in connections)]
+        self.boxes: dict[str, Box] = {}
+        self.places: dict[str, Place] = {}
+        tallest = defaultdict[int, float](float)
+        for instance in instances:
+            own = [[name for name in side if _block(name) == instance] for side in sides]
+            column, height = columns[instance], PITCH * (1 + max(2, *map(len, own)))
+            left, top = column * (WIDTH + GAP), -tallest[column]
+            self.boxes[instance] = Box(left, top - height, left + WIDTH, top)
+            tallest[column] += height + 2.0 * PITCH
+            for x, names in enumerate(own):
+                for k, name in enumerate(names, 1):
+                    self.places[name] = Place(float(x), 1.0 - k / (len(names) + 1))
+        self.corners = self._corners(connections, columns)
+
+    def point(self, name: str) -> tuple[float, float]:
+        """Of a connector."""
+        box, place = self.boxes[_block(name)], self.places[name]
+        return box.x1 + place.x * (box.x2 - box.x1), box.y1 + place.y * (box.y2 - box.y1)
+
+    def _corners(
+        self, connections: Sequence[Connection], columns: dict[str, int]
+    ) -> dict[tuple[str, str], list[tuple[float, float]]]:
+        ends = [(c.source, c.target, columns[_block(c.source)], columns[_block(c.target)]) for c in connections]
+        lanes = defaultdict[int, list[tuple[str, str, int]]](list)
+        for source, target, begin, end in ends:
+            lanes[begin].append((source, target, 0))
+            if end != begin + 1:
+                lanes[end - 1].append((source, target, 1))
+        x = {
+            line: gap * (WIDTH + GAP) + WIDTH + GAP * k / (len(lines) + 1)
+            for gap, lines in lanes.items()
+            for k, line in enumerate(lines, 1)
+        }
+        above, below = 0.0, min(box.y1 for box in self.boxes.values())
+        corners = {}
+        for source, target, begin, end in ends:
+            (_, y_source), (_, y_target) = self.point(source), self.point(target)
+            first = x[source, target, 0]
+            if end == begin + 1:
+                corners[source, target] = [(first, y_source), (first, y_target)]
+                continue
+            above, below = (above + PITCH, below) if end > begin else (above, below - PITCH)
+            y, last = above if end > begin else below, x[source, target, 1]
+            corners[source, target] = [(first, y_source), (first, y), (last, y), (last, y_target)]
+        return corners
 
 
-def corners(source: str, target: str) -> tuple[tuple[float, float], ...]:
-    """Of the line between two connectors `instance.variable`; none if it is straight or they have no place."""
-    if not (source in PLACES and target in PLACES):
-        return ()
-    begin, end = _point(source), _point(target)
-    if target in ABOVE:
-        return (begin[0], ABOVE[target]), (end[0], ABOVE[target])
-    if PLACES[source].y in (0.0, 1.0):
-        return ((begin[0], end[1]),)
-    if PLACES[target].y in (0.0, 1.0):
-        return ((end[0], begin[1]),)
-    return ()
+def _columns(instances: Sequence[str], connections: Sequence[Connection]) -> dict[str, int]:
+    """The column of each block: as many connections away as it is from those that the first signal of all reaches, the
+    controllers; what nothing reaches stands before these."""
+    edges = {(_block(c.source), _block(c.target)) for c in connections}
+    reached = {_block(c.target) for c in connections if c.source == connections[0].source}
+    columns, column = dict.fromkeys(instances, 0), 0
+    waiting = [instance for instance in instances if instance not in reached]
+    while reached:
+        column += 1
+        columns |= dict.fromkeys(reached, column)
+        reached = {fed for fed in waiting if any((of, fed) in edges for of in reached)}
+        waiting = [instance for instance in waiting if instance not in reached]
+    return columns
 
 
-def _point(name: str) -> tuple[float, float]:
-    box, place = BOXES[name.partition(".")[0]], PLACES[name]
-    return box.x1 + place.x * (box.x2 - box.x1), box.y1 + place.y * (box.y2 - box.y1)
+def _block(name: str) -> str:
+    return name.partition(".")[0]

@@ -17,7 +17,7 @@ from fmuloop.system import Connection
 from fmuloop.wiring import Fit
 
 from ...loop.places import STEP_SIZE
-from . import layout
+from .layout import Layout, Place
 from .variables import as_it_is, conversion, outputs, their_name, typed_element, units, version
 from .xml import Element, document, element
 
@@ -35,12 +35,13 @@ def structure(name: str, description: str, tool: str, fitted: Fit, sets: Mapping
         stop_time: in s.
     """
     shown = _connectors(fitted)
+    layout = Layout(list(fitted.interfaces), fitted.system.connections)
     system = element(
         "ssd:System",
         {"name": "loop", "description": description},
         [
-            element("ssd:Elements", children=[_component(fitted, i, shown, sets) for i in fitted.interfaces]),
-            element("ssd:Connections", children=[_connection(fitted, c) for c in fitted.system.connections]),
+            element("ssd:Elements", children=[_component(fitted, i, shown, sets, layout) for i in fitted.interfaces]),
+            element("ssd:Connections", children=[_connection(fitted, c, layout) for c in fitted.system.connections]),
             _annotation(OMS, "oms:Annotations", element("oms:SimulationInformation", children=[_oms_step()])),
         ],
     )
@@ -59,10 +60,12 @@ def _connectors(fitted: Fit) -> dict[str, ModelVariable]:
     return {name: as_it_is(fitted, name) for name in (*outputs(fitted), *targets)}
 
 
-def _component(fitted: Fit, instance: str, shown: Mapping[str, ModelVariable], sets: Mapping[str, str]) -> Element:
+def _component(
+    fitted: Fit, instance: str, shown: Mapping[str, ModelVariable], sets: Mapping[str, str], layout: Layout
+) -> Element:
     interface = fitted.interfaces[instance]
     connectors = [
-        _connector(their_name(fitted.system, name), name, variable, interface.fmi)
+        _connector(their_name(fitted.system, name), name, variable, interface.fmi, layout.places.get(name))
         for name, variable in shown.items()
         if name.partition(".")[0] == instance
     ]
@@ -78,24 +81,24 @@ def _component(fitted: Fit, instance: str, shown: Mapping[str, ModelVariable], s
         },
         [
             element("ssd:Connectors", children=connectors),
-            element("ssd:ElementGeometry", layout.BOXES[instance]._asdict()),
+            element("ssd:ElementGeometry", layout.boxes[instance]._asdict()),
             element("ssd:ParameterBindings", children=[binding]),
         ],
     )
 
 
-def _connector(theirs: str, name: str, variable: ModelVariable, fmi: int) -> Element:
+def _connector(theirs: str, name: str, variable: ModelVariable, fmi: int, place: Place | None) -> Element:
     connector = element(
         "ssd:Connector",
         {"name": theirs, "kind": variable.causality, "description": variable.description or name},
         [typed_element("ssc", str(variable.type), fmi, unit_of(variable))],
     )
-    if name in layout.PLACES:
-        connector.append(element("ssd:ConnectorGeometry", layout.PLACES[name]._asdict()))
+    if place is not None:
+        connector.append(element("ssd:ConnectorGeometry", place._asdict()))
     return connector
 
 
-def _connection(fitted: Fit, connection: Connection) -> Element:
+def _connection(fitted: Fit, connection: Connection, layout: Layout) -> Element:
     ends = {}
     for end, name in {"start": connection.source, "end": connection.target}.items():
         ends[f"{end}Element"] = name.partition(".")[0]
@@ -104,9 +107,9 @@ def _connection(fitted: Fit, connection: Connection) -> Element:
     line = element("ssd:Connection", ends | ({"suppressUnitConversion": True} if factor != 1.0 else {}))
     if factor != 1.0:
         line.append(element("ssc:LinearTransformation", {"factor": factor}))
-    if corners := layout.corners(connection.source, connection.target):
-        along = {f"points{axis}": " ".join(repr(corner[k]) for corner in corners) for k, axis in enumerate("XY")}
-        line.append(element("ssd:ConnectionGeometry", along))
+    corners = layout.corners[connection.source, connection.target]
+    along = {f"points{axis}": " ".join(repr(corner[k]) for corner in corners) for k, axis in enumerate("XY")}
+    line.append(element("ssd:ConnectionGeometry", along))
     return line
 
 

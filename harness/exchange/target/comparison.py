@@ -9,12 +9,12 @@ import numpy as np
 
 from fmublocks.target.image import build_on_target
 from fmublocks.target.link import Answer, Link
-from fmuloop.system import System
 
 from ....fmus.catalogue import CONTROLLERS
-from ...loop.settings import Settings
+from ...loop import roles
+from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.catalogue import USUAL_MANOEUVRES
-from ...manoeuvres.for_car import for_car, largest_torque
+from ...manoeuvres.for_car import for_car
 from ...metrics.evaluate import at_samples
 from ...simulation.simulate import simulate
 from .controllers import Programs
@@ -110,26 +110,23 @@ class InLoop(NamedTuple):
     rms: float
 
 
-def in_loop(
-    programs: Programs, controller: str, system: System, names: Sequence[str], settings: Settings
-) -> Iterator[InLoop]:
+def in_loop(programs: Programs, resolved: ResolvedLoop, names: Sequence[str]) -> Iterator[InLoop]:
     """Drives every manoeuvre; `names` are those of the controller's inputs.
 
     Raises:
         SimulationError: the target was lost, hung or crashed.
     """
     with TemporaryDirectory(prefix="driveline-") as temporary:
-        path = build_on_target(CONTROLLERS[controller], Path(temporary))
-        T_max = largest_torque(settings)
-        for manoeuvre in (for_car(usual, T_max) for usual in USUAL_MANOEUVRES):
-            there = at_samples(simulate(manoeuvre, settings, controller=path))
-            here = at_samples(simulate(manoeuvre, settings))
-            off_line = responses(programs.single(), fed(manoeuvre, there, system, names))
+        path = build_on_target(CONTROLLERS[str(resolved.settings.controller)], Path(temporary))
+        for manoeuvre in (for_car(each, resolved.T_max) for each in USUAL_MANOEUVRES):
+            there = at_samples(simulate(manoeuvre, resolved, controller=path))
+            here = at_samples(simulate(manoeuvre, resolved))
+            off_line = responses(programs.single(), fed(manoeuvre, there, resolved.system, names))
             T_ref = np.array([answer.outputs[0] for answer in off_line])
-            distance, twist = (np.abs(there[name] - here[name]) for name in ("controller.T_ref", "plant.T_gear"))
+            distance, twist = (np.abs(there[name] - here[name]) for name in (roles.REFERENCE_TORQUE, roles.GEAR_TORQUE))
             yield InLoop(
                 manoeuvre.name,
-                differing=int(np.count_nonzero(T_ref != there["controller.T_ref"])),
+                differing=int(np.count_nonzero(T_ref != there[roles.REFERENCE_TORQUE])),
                 T_ref=float(np.max(distance)),
                 T_gear=float(np.max(twist)),
                 rms=float(np.sqrt(np.mean(distance**2))),

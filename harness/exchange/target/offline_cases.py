@@ -1,6 +1,6 @@
 """What the controller is fed with off-line: what it got in the loop, and what no car would send."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from math import inf, nan
 from pathlib import Path
 from typing import NamedTuple
@@ -8,14 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from driverecords.drive import read_drive
-from fmuloop.interface import Interface
 from fmuloop.system import System
 
-from ...loop.settings import Settings
+from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.catalogue import TOWN_DRIVE, USUAL_MANOEUVRES
 from ...manoeuvres.for_car import for_car
 from ...manoeuvres.manoeuvre import Manoeuvre
-from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
+from ...manoeuvres.road_load import RoadLoad, Track
 from ...metrics.evaluate import at_samples
 from ...simulation.simulate import signals, simulate
 from ...studies.drives.replay import followed
@@ -49,9 +48,9 @@ class Case(NamedTuple):
     drawn: bool = False
 
 
-def recorded(manoeuvre: Manoeuvre, system: System, names: Sequence[str], settings: Settings) -> Case:
+def recorded(manoeuvre: Manoeuvre, resolved: ResolvedLoop, names: Sequence[str]) -> Case:
     """What the controller of a loop, which has inputs of these names, got in a manoeuvre."""
-    return fed(manoeuvre, at_samples(simulate(manoeuvre, settings)), system, names)
+    return fed(manoeuvre, at_samples(simulate(manoeuvre, resolved)), resolved.system, names)
 
 
 def fed(manoeuvre: Manoeuvre, results: np.ndarray, system: System, names: Sequence[str]) -> Case:
@@ -62,16 +61,13 @@ def fed(manoeuvre: Manoeuvre, results: np.ndarray, system: System, names: Sequen
     return Case(manoeuvre.name, tuple(names), np.column_stack(columns))
 
 
-def cases_in_loop(
-    system: System, interfaces: Mapping[str, Interface], names: Sequence[str], settings: Settings
-) -> Iterator[Case]:
+def cases_in_loop(resolved: ResolvedLoop, names: Sequence[str]) -> Iterator[Case]:
     """What it got in every manoeuvre and on the recorded drive; arguments as for `recorded`."""
-    T_max = torque_limit(interfaces["motor"], settings.parameters)
+    T_max = resolved.T_max
     for manoeuvre in USUAL_MANOEUVRES:
-        yield recorded(for_car(manoeuvre, T_max), system, names, settings)
+        yield recorded(for_car(manoeuvre, T_max), resolved, names)
     track = Track.of(read_drive(Path(TOWN_DRIVE)), T_max)
-    load = RoadLoad.of_plant(interfaces["plant"], settings.parameters, settings.road_load)
-    yield recorded(followed(track, load, settings)[0], system, names, settings)
+    yield recorded(followed(track, RoadLoad.of(resolved), resolved)[0], resolved, names)
 
 
 def random_inputs(cases: Sequence[Case], seed: int, samples: int = SAMPLES) -> Iterator[Case]:

@@ -10,14 +10,13 @@ import numpy as np
 from fmublocks.native.statements import SINGLE
 from fmublocks.target.sources import target_sources
 from fmuloop.parameter_changes import require_constant
-from fmuloop.wiring import fit
 from toolground.atomic_files import write_text
 from toolground.csv_file import write_csv
 from toolground.progress import progress
 
 from ....fmus.catalogue import CONTROLLERS
 from ...loop.places import T_S
-from ...loop.settings import Settings, loop
+from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.catalogue import USUAL_MANOEUVRES
 from .comparison import Comparison, InLoop, compare, in_loop
 from .controllers import programs
@@ -49,33 +48,32 @@ STEPS = (len(USUAL_MANOEUVRES) + 1) + (len(USUAL_MANOEUVRES) + 4) + len(USUAL_MA
 """For the progress: what the loop gives; these cases and those that are drawn; the target in the loop."""
 
 
-def record(settings: Settings) -> Record:
+def record(resolved: ResolvedLoop) -> Record:
     """Runs all cases on the target and on this machine, and every manoeuvre with the target in the loop.
 
     Args:
-        settings: of the loop with the controller, which is one of the project.
+        resolved: the loop with the controller, which is one of the project.
 
     Raises:
         CompilerError: a compiler or the emulator is missing.
         SimulationError: the target was lost, hung or crashed.
     """
+    settings = resolved.settings
     require_constant(settings.parameters, "the C on the target")
-    controller, system = str(settings.controller), loop(settings)
-    interfaces = fit(system).interfaces
-    own = interfaces["controller"]
+    controller, own = str(settings.controller), resolved.fit.interfaces["controller"]
     inputs, outputs = ([v.name for v in own.of_causality(kind)] for kind in ("input", "output"))
     values = {v.name: float(v.start or 0.0) for v in own.of_causality("parameter")}
     values |= {name: settings.parameters.get(f"controller.{name}", value) for name, value in values.items()}
     fmu = CONTROLLERS[controller].started_with(values)
     sources = target_sources(fmu, SINGLE)
     with progress(STEPS, "target") as done, programs(fmu) as binaries:
-        cases = _counted(cases_in_loop(system, interfaces, inputs, settings), done, 0)
+        cases = _counted(cases_in_loop(resolved, inputs), done, 0)
         first = len(cases)
         cases += random_inputs(cases, settings.seed)
         comparisons = _counted((compare(binaries, case, outputs) for case in cases), done, first)
         states = np.concatenate([comparison.states for comparison in comparisons if not comparison.case.drawn])
         comparisons.append(compare(binaries, random_states(cases[-2], states, settings.seed), outputs))
-        loops = _counted(in_loop(binaries, controller, system, inputs, settings), done, first + len(comparisons))
+        loops = _counted(in_loop(binaries, resolved, inputs), done, first + len(comparisons))
         return Record(comparisons, loops, schedule(sources), size_of(binaries))
 
 

@@ -6,7 +6,6 @@ of the cases, whatever finishes first.
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
-from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +13,8 @@ from fmuloop.results import Results
 from toolground.errors import UserError
 
 from ...loop.places import by_name
-from ...loop.settings import Settings
+from ...loop.resolved import ResolvedLoop
+from ...loop.topology import DriveUnit, Topology, of_unit
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import at_samples, evaluate
@@ -62,27 +62,34 @@ class Case(NamedTuple):
         return f"{self.plant_name}_{self.manoeuvre}_{self.controller_name if self.control else 'off'}"
 
 
-Loops = Mapping[tuple[str, str], Settings]
-"""The settings of the loops by plant and controller of the cases."""
+Loops = Mapping[tuple[str, str], ResolvedLoop]
+"""The loops by plant and controller of the cases."""
 
 
 class Outcome(NamedTuple):
-    """A case that was run."""
+    """A case that was run, as one of the drive units saw it."""
 
     case: Case
     metrics: Metrics
     results: Results
+    unit: DriveUnit = DriveUnit()
+
+    @property
+    def plant_name(self) -> str:
+        """In tables, with the drive unit."""
+        return self.unit.named(self.case.plant_name)
 
     def row(self, several: bool = False) -> Row:
         """Of the table; `several` controllers are in it."""
         damping = self.case.controller_name if several else "on"
-        return Row(self.case.plant_name, self.case.manoeuvre, damping if self.case.control else "off", self.metrics)
+        return Row(self.plant_name, self.case.manoeuvre, damping if self.case.control else "off", self.metrics)
 
     @property
     def record(self) -> dict[str, Any]:
         """The run for files: what it was, and all metrics by their keys."""
         return {
             "plant": self.case.plant_name,
+            **({"drive_unit": self.unit.name} if self.unit.name else {}),
             "manoeuvre": self.case.manoeuvre,
             "control": self.case.control,
             "controller": self.case.controller_name,
@@ -116,12 +123,18 @@ def loops_of(given: Loops) -> Loops:
 
 def run_case(
     case: Case, output: Path, loops: Loops, manoeuvres: Manoeuvres = MANOEUVRES, format: str = "csv"
-) -> Outcome:
+) -> list[Outcome]:
     """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
-    manoeuvre = manoeuvres[case.manoeuvre]
-    results = simulate(manoeuvre, loops[case.plant, case.controller])
+    manoeuvre, resolved = manoeuvres[case.manoeuvre], loops[case.plant, case.controller]
+    results = simulate(manoeuvre, resolved)
     write_signals(at_samples(results), output / case.file_name, format)
-    return Outcome(case, evaluate(results, manoeuvre), results)
+    return outcomes_of(case, manoeuvre, results, resolved.settings.topology)
+
+
+def outcomes_of(case: Case, manoeuvre: Manoeuvre, results: Results, topology: Topology) -> list[Outcome]:
+    """What a run is worth, of each drive unit."""
+    runs = ((of_unit(results, unit), unit) for unit in topology.units)
+    return [Outcome(case, evaluate(run, manoeuvre), run, unit) for run, unit in runs]
 
 
 def run_cases(
@@ -143,22 +156,27 @@ def run_cases(
     from fmuloop.many_runs import run_many  # one run does without
 
     run = partial(run_case, output=output / RUNS, loops=loops, manoeuvres=manoeuvres, format=format)
-    outcomes = run_many(run, todo)
+    outcomes = [outcome for of_case in run_many(run, todo) for outcome in of_case]
     draw = partial(_figure, folder=output, options=options, manoeuvres=manoeuvres)
     figures = run_many(draw, drawn(outcomes, manoeuvres), label="drawing")
     return outcomes, [file for files in figures for file in files]
 
 
 class Together(list[Outcome]):
-    """What is of one manoeuvre on one plant: the run without damping, then those with each controller."""
+    """What is of one manoeuvre on one plant, and one drive unit: the run without damping, then those with each
+    controller."""
 
     def __str__(self) -> str:
-        return f"{self[0].case.manoeuvre} on {self[0].case.plant_name}"
+        return f"{self[0].case.manoeuvre} on {self[0].plant_name}"
 
 
 def together(outcomes: Iterable[Outcome]) -> list[Together]:
-    """By manoeuvre and plant, in the order of the outcomes."""
-    return [Together(each) for _, each in groupby(outcomes, lambda each: (each.case.plant, each.case.manoeuvre))]
+    """By manoeuvre, plant and drive unit, in the order of the outcomes."""
+    groups: dict[tuple[str, str, str], Together] = {}
+    for outcome in outcomes:
+        key = outcome.case.plant, outcome.case.manoeuvre, outcome.unit.name
+        groups.setdefault(key, Together()).append(outcome)
+    return list(groups.values())
 
 
 def drawn(outcomes: Iterable[Outcome], manoeuvres: Manoeuvres = MANOEUVRES) -> list[Together]:
@@ -174,7 +192,8 @@ def drawn(outcomes: Iterable[Outcome], manoeuvres: Manoeuvres = MANOEUVRES) -> l
 def rows_of(outcomes: Sequence[Outcome]) -> list[Row]:
     """Of the table of all runs."""
     several = len({outcome.case.controller for outcome in outcomes}) > 2
-    return [outcome.row(several) for outcome in outcomes]
+    plants = list(dict.fromkeys(outcome.plant_name for outcome in outcomes))
+    return [outcome.row(several) for plant in plants for outcome in outcomes if outcome.plant_name == plant]
 
 
 def write_tables(outcomes: Sequence[Outcome], folder: Path, title: str = DAMPINGS) -> list[Path]:
@@ -188,10 +207,10 @@ def write_tables(outcomes: Sequence[Outcome], folder: Path, title: str = DAMPING
 def _figure(outcomes: Together, folder: Path, options: FigureOptions, manoeuvres: Manoeuvres) -> list[Path]:
     """Draws the runs of one manoeuvre on one plant, a step close up and all else whole; returns the files."""
     case = outcomes[0].case
-    manoeuvre, plant = manoeuvres[case.manoeuvre], case.plant_name
+    manoeuvre, plant = manoeuvres[case.manoeuvre], outcomes[0].plant_name
     from ...views.drive_figure import plot_drive  # not for those who draw nothing
     from ...views.step_figure import plot_step
 
     plot = plot_drive if manoeuvre.dT is None else plot_step
     runs = {outcome.case.controller_name: outcome.results for outcome in outcomes}
-    return plot(runs, manoeuvre, plant, folder / f"{plant}_{manoeuvre.name}", options)
+    return plot(runs, manoeuvre, plant, folder / f"{plant.replace(' ', '_')}_{manoeuvre.name}", options)

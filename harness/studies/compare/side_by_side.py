@@ -10,10 +10,11 @@ from fmuloop.many_runs import run_many
 from toolground.errors import UserError
 
 from ...loop.arguments import BLOCKS
-from ...loop.built_fmus import require_fitting
 from ...loop.mapped_names import mappings
 from ...loop.places import PLACES, PLANTS, NameOrFile
+from ...loop.resolved import resolve
 from ...loop.settings import RunChanges, Settings
+from ...loop.topology import of_unit
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
@@ -43,7 +44,8 @@ def compare(
 
     Returns:
         The metrics of each run, in SI units, by (plant, manoeuvre, controller): the name or path of the plant, the name
-        of the manoeuvre, the name or path of the controller or "without damping".
+        of the manoeuvre, the name or path of the controller or "without damping". In a loop of several drive units the
+        name of one follows that of the plant.
 
     Raises:
         UserError: two plants, manoeuvres or controllers have the same name, and what `simulate` raises.
@@ -61,13 +63,13 @@ def compare(
     ]
     common, todo = Settings().replace(**changes), cases(each[0], list(by_name), each[1])
     mapped = mappings(common.mapping, each[0], each[1], common.limits)
-    made = {(p, c): common.replace(plant=p, controller=c, mapping=own) for (p, c), own in mapped.items()}
-    require_fitting(made.values())
-    loops = loops_of(made)
+    resolved = {(p, c): resolve(common, plant=p, controller=c, mapping=own) for (p, c), own in mapped.items()}
+    loops = loops_of(resolved)
     one = partial(_metrics, manoeuvres=by_name, loops=loops)
-    return dict(zip(todo, run_many(one, todo, label="comparing"), strict=True))
+    return {case: metrics for of_case in run_many(one, todo, label="comparing") for case, metrics in of_case.items()}
 
 
-def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], loops: Loops) -> Metrics:
-    manoeuvre = manoeuvres[case.manoeuvre]
-    return evaluate(simulate(manoeuvre, loops[case.plant, case.controller]), manoeuvre)
+def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], loops: Loops) -> dict[Case, Metrics]:
+    manoeuvre, resolved = manoeuvres[case.manoeuvre], loops[case.plant, case.controller]
+    results, units = simulate(manoeuvre, resolved), resolved.settings.topology.units
+    return {case._replace(plant=unit.named(case.plant)): evaluate(of_unit(results, unit), manoeuvre) for unit in units}

@@ -11,9 +11,9 @@ from fmuloop.argument_kinds import require_each, require_kind
 from toolground.errors import UserError
 
 from ...loop.arguments import BLOCKS
-from ...loop.built_fmus import require_fitting
 from ...loop.mapped_names import mappings
 from ...loop.places import PLACES, PLANTS, NameOrFile, by_name
+from ...loop.resolved import resolve
 from ...loop.settings import RunChanges, Settings
 from ...manoeuvres.road_load import Track
 from ...manoeuvres.speed_following import require_held
@@ -68,8 +68,7 @@ def replay(
     common = Settings(plant).replace(**changes)
     mapped = mappings(common.mapping, [str(plant)], list(named.values()), common.limits)
     own = {name: mapped[str(plant), controller] for name, controller in named.items()}
-    given = {name: common.replace(controller=named[name], mapping=own[name]) for name in named}
-    require_fitting(given.values())
+    given = {name: resolve(common, controller=named[name], mapping=own[name]) for name in named}
     load, T_max = car_of(next(iter(given.values())))
     tell(of_drive(drive, load, T_max), drive.name)
     found = rides(Track.of(drive, T_max), load, given, held)

@@ -12,13 +12,13 @@ from numpy.lib.recfunctions import repack_fields
 from driverecords.file_units import FileUnit
 from fmuloop.many_runs import run_many
 from fmuloop.results import Results
-from fmuloop.wiring import fit
 from toolground.errors import UserError
 from toolground.progress import part, progress
 
-from ...loop.settings import Settings, loop
+from ...loop import roles
+from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.manoeuvre import Manoeuvre
-from ...manoeuvres.road_load import RoadLoad, Track, torque_limit
+from ...manoeuvres.road_load import RoadLoad, Track
 from ...manoeuvres.speed_following import drive, lacking_force, needed_force
 from ...metrics.damage import damage, require_counting
 from ...metrics.declaration import given, measured
@@ -32,15 +32,15 @@ from ...views.signals_file import write_signals
 
 KEPT = [
     "time",
-    "controller.T_driver",
-    "plant.T_brake",
-    "plant.slope",
-    "controller.T_ref",
-    "plant.omega_1",
-    "plant.omega_2",
-    "plant.T_gear",
-    "plant.v",
-    "plant.a_body",
+    roles.DEMAND,
+    roles.BRAKE_TORQUE,
+    roles.SLOPE,
+    roles.REFERENCE_TORQUE,
+    roles.MOTOR_SPEED,
+    roles.WHEEL_SPEED,
+    roles.GEAR_TORQUE,
+    roles.BODY_SPEED,
+    roles.BODY_ACCELERATION,
 ]
 """Columns that are kept of a ride; a trip of half an hour with all of them would not fit in memory."""
 
@@ -78,15 +78,15 @@ class Ride:
         return self.controller if self.control else "off"
 
 
-def signals_of(manoeuvre: Manoeuvre, settings: Settings) -> Results:
+def signals_of(manoeuvre: Manoeuvre, resolved: ResolvedLoop) -> Results:
     """The columns KEPT of a run, at the samples of the controller."""
-    kept: Any = repack_fields(at_samples(simulate(manoeuvre, settings))[KEPT])
+    kept: Any = repack_fields(at_samples(simulate(manoeuvre, resolved))[KEPT])
     return kept
 
 
 def speed_error(signals: np.ndarray, track: Track) -> float:
     """Rms of the simulated less the recorded speed in m/s."""
-    return float(np.sqrt(np.mean((signals["plant.v"] - np.interp(signals["time"], track.t, track.v)) ** 2)))
+    return float(np.sqrt(np.mean((signals[roles.BODY_SPEED] - np.interp(signals["time"], track.t, track.v)) ** 2)))
 
 
 def ride_of(controller: str, signals: Results, manoeuvre: Manoeuvre, track: Track) -> Ride:
@@ -94,14 +94,16 @@ def ride_of(controller: str, signals: Results, manoeuvre: Manoeuvre, track: Trac
     metrics = evaluate(signals, manoeuvre)
     computed = {
         "gear_torque_rms": lambda: given(metrics, "gear_torque_rms"),
-        "gear_damage": lambda: damage(signals["plant.T_gear"]),
+        "gear_damage": lambda: damage(signals[roles.GEAR_TORQUE]),
         "jerk_rms": lambda: given(metrics, "jerk_rms"),
         "speed_error_rms": lambda: speed_error(signals, track),
     }
     return Ride(controller, RideMetrics(**measured(computed, none_because=end_of(signals))), signals)
 
 
-def followed(track: Track, load: RoadLoad, settings: Settings, held: float | None = None) -> tuple[Manoeuvre, Results]:
+def followed(
+    track: Track, load: RoadLoad, resolved: ResolvedLoop, held: float | None = None
+) -> tuple[Manoeuvre, Results]:
     """The manoeuvre in which the car without control keeps the recorded speed, and the signals of that run."""
     F, lacking = needed_force(track, load), 0.0
     with progress(MOST_DRIVES, track.name) as done:
@@ -109,26 +111,26 @@ def followed(track: Track, load: RoadLoad, settings: Settings, held: float | Non
             F = F + lacking
             manoeuvre = drive(track, load, F, held)
             with part(done, k):
-                signals = signals_of(manoeuvre, settings.replace(control=False))
+                signals = signals_of(manoeuvre, resolved.replace(control=False))
             if signals.ended or speed_error(signals, track) <= CLOSE:
                 break
-            lacking = lacking_force(track, load, signals["time"], signals["plant.v"])
+            lacking = lacking_force(track, load, signals["time"], signals[roles.BODY_SPEED])
     return manoeuvre, signals
 
 
-def car_of(settings: Settings) -> tuple[RoadLoad, float]:
+def car_of(resolved: ResolvedLoop) -> tuple[RoadLoad, float]:
     """The road load of the plant of a loop, and the largest torque of its motor in N.m."""
-    interfaces = fit(loop(settings)).interfaces
-    limit = torque_limit(interfaces["motor"], settings.parameters)
-    return RoadLoad.of_plant(interfaces["plant"], settings.parameters, settings.road_load), limit
+    return RoadLoad.of(resolved), resolved.T_max
 
 
-def replay(track: Track, load: RoadLoad, controllers: Mapping[str, Settings], held: float | None = None) -> list[Ride]:
+def replay(
+    track: Track, load: RoadLoad, controllers: Mapping[str, ResolvedLoop], held: float | None = None
+) -> list[Ride]:
     """The ride without damping, then that with each controller, on the same road.
 
     Args:
         load: of the plant.
-        controllers: their names, and the settings of the loop with each; the first is the one that is switched off.
+        controllers: their names, and the loop with each; the first is the one that is switched off.
         held: see `harness.manoeuvres.speed_following.drive`.
 
     Raises:
@@ -148,7 +150,7 @@ def replay(track: Track, load: RoadLoad, controllers: Mapping[str, Settings], he
     return [ride_of(WITHOUT, undamped, manoeuvre, track), *damped]
 
 
-def _damped(manoeuvre: Manoeuvre, track: Track, controllers: Mapping[str, Settings], controller: str) -> Ride:
+def _damped(manoeuvre: Manoeuvre, track: Track, controllers: Mapping[str, ResolvedLoop], controller: str) -> Ride:
     return ride_of(controller, signals_of(manoeuvre, controllers[controller]), manoeuvre, track)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import welch
 
+from ...loop import roles
 from ...loop.places import T_S
 from ...metrics.oscillation import amplitude
 from ...metrics.run_metrics import RideMetrics
@@ -120,13 +121,13 @@ def _figures(rides: Rides, recorded: tuple[np.ndarray, np.ndarray], starts: Sequ
 
 
 def _acceleration(name: str, looks: Mapping[str, Look]) -> Line:
-    return Line(column("plant.a_body"), name, *looks[name])
+    return Line(column(roles.BODY_ACCELERATION), name, *looks[name])
 
 
 def _densities(runs: Runs, looks: Mapping[str, Look]) -> Panel:
     curves = []
     for name, signals in runs.items():
-        T_gear = signals["plant.T_gear"]
+        T_gear = signals[roles.GEAR_TORQUE]
         f, power = welch(T_gear, 1.0 / T_S, nperseg=min(SEGMENT, len(T_gear)), detrend="linear")
         at = (f > 0.0) & (f <= TO_50_HZ[1])
         curves.append(Curve(f[at], np.sqrt(power[at]), name, *looks[name]))
@@ -135,7 +136,7 @@ def _densities(runs: Runs, looks: Mapping[str, Look]) -> Panel:
 
 def _exceeded(runs: Runs, looks: Mapping[str, Look]) -> tuple[Panel, float]:
     """Over the swing the share of the time in which it is exceeded; and the largest swing."""
-    swings = {name: np.sort(amplitude(signals["plant.T_gear"], T_S)) for name, signals in runs.items()}
+    swings = {name: np.sort(amplitude(signals[roles.GEAR_TORQUE], T_S)) for name, signals in runs.items()}
     levels = np.linspace(0.0, max(float(swing[-1]) for swing in swings.values()), 400)
     curves = []
     for name, swing in swings.items():

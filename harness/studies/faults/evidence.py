@@ -6,6 +6,7 @@ from math import inf
 
 import numpy as np
 
+from ...loop import roles
 from ...loop.places import T_S
 from .fault_cases import Fault
 from .fault_injection import Limits, Runs
@@ -52,7 +53,7 @@ class Evidence:
 
     @property
     def status(self) -> np.ndarray:
-        return self.runs.faulty["controller.status"]
+        return self.runs.faulty[roles.STATUS]
 
     @property
     def begin(self) -> float:
@@ -76,7 +77,7 @@ def motor_signal_is_wrong(seen: Evidence) -> np.ndarray:
     run = seen.runs.faulty
     speed, torque = run["faults.omega_1_meas"], run["faults.T_mot_est"]
     absurd = ~np.isfinite(speed) | ~(np.abs(torque) <= 2.0 * seen.limits.T_max)
-    right = run["motor.omega_1_meas"]
+    right = run[roles.MEASURED_MOTOR_SPEED]
     contradicted = np.abs(speed - right) > WRONG_SPEED + SHARE * np.abs(right)
     return absurd | (contradicted & wheel_speed_is_good(seen))
 
@@ -84,8 +85,8 @@ def motor_signal_is_wrong(seen: Evidence) -> np.ndarray:
 def wheel_speed_is_good(seen: Evidence) -> np.ndarray:
     """Where the controller has for some time had a wheel speed that is valid, right and not old."""
     run = seen.runs.faulty
-    right = np.abs(run["faults.omega_2_can"] - run["plant.omega_2"]) <= RIGHT_SPEED
-    good = run["faults.valid"] & run["can.valid"] & right & (unchanged_for(run["faults.counter"]) <= SILENCE)
+    right = np.abs(run["faults.omega_2_can"] - run[roles.WHEEL_SPEED]) <= RIGHT_SPEED
+    good = run["faults.valid"] & run[roles.BUS_VALID] & right & (unchanged_for(run["faults.counter"]) <= SILENCE)
     return good & (time_since(~good) > REFERENCE_AFTER)
 
 
@@ -103,8 +104,8 @@ def signals_part(seen: Evidence) -> np.ndarray:
     """
     run = seen.runs.faulty
     wheel = np.abs(run["faults.omega_2_can"])
-    wrong = run["faults.valid"] & (np.abs(wheel - np.abs(run["plant.omega_2"])) > RIGHT_SPEED)
-    error = wheel - np.abs(run["motor.omega_1_meas"])
+    wrong = run["faults.valid"] & (np.abs(wheel - np.abs(run[roles.WHEEL_SPEED])) > RIGHT_SPEED)
+    error = wheel - np.abs(run[roles.MEASURED_MOTOR_SPEED])
     mismatch = wrong & (np.abs(error) > MISMATCH + SHARE * wheel)
     begins = mismatch & ~_before(mismatch)
     leapt = begins & _before(run["faults.valid"]) & (np.abs(error - _before(error)) > LEAP)
@@ -115,7 +116,7 @@ def signals_part(seen: Evidence) -> np.ndarray:
 
 def motor_is_too_fast(seen: Evidence) -> np.ndarray:
     """Where the motor turns faster than the controller takes for plausible."""
-    return np.abs(seen.runs.faulty["motor.omega_1_meas"]) > seen.limits.omega_max
+    return np.abs(seen.runs.faulty[roles.MEASURED_MOTOR_SPEED]) > seen.limits.omega_max
 
 
 def unchanged_for(x: np.ndarray) -> np.ndarray:

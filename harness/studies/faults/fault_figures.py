@@ -10,6 +10,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from ....models.controller.causes import OUTPUT
+from ...loop import roles
 from ...views.colours import BLACK, BLUE, GREY, ORANGE, VERMILION
 from ...views.figure_options import FigureOptions
 from ...views.figure_style import in_cell, matrix_axes, plot, sheet
@@ -110,15 +111,15 @@ def case_panels(case: Case, runs: Runs) -> list[Panel]:
     speeds = (
         drawn(faulty, "faults.omega_2_can", "wheels, received", GREY, 1.4),
         drawn(faulty, "faults.omega_1_meas", "motor, received", VERMILION),
-        drawn(faulty, "plant.omega_1", "motor, true", BLACK),
+        drawn(faulty, roles.MOTOR_SPEED, "motor, true", BLACK),
     )
-    without = drawn(undamped, "plant.T_gear", "without control", GREY, 1.4)
+    without = drawn(undamped, roles.GEAR_TORQUE, "without control", GREY, 1.4)
     torques, added, status = (
         (
-            drawn(faulty, name, "with the fault", VERMILION, 1.0, name == "controller.status"),
-            drawn(healthy, name, "without it", BLUE, 0.8, name == "controller.status"),
+            drawn(faulty, name, "with the fault", VERMILION, 1.0, name == roles.STATUS),
+            drawn(healthy, name, "without it", BLUE, 0.8, name == roles.STATUS),
         )
-        for name in ("plant.T_gear", "controller.T_damp", "controller.status")
+        for name in (roles.GEAR_TORQUE, roles.DAMPING_TORQUE, roles.STATUS)
     )
     panels = [
         Panel("speed in rad/s", [lasting, *speeds]),
@@ -126,9 +127,9 @@ def case_panels(case: Case, runs: Runs) -> list[Panel]:
         Panel("added torque in N·m", [lasting, *added]),
         Panel("status", [lasting, *status], bounds=(0.7, 4.3), ticks=STATUS, height=0.55),
     ]
-    if "controller.cause" in (faulty.dtype.names or ()):  # a controller of somebody else's need not have it
-        found = {float(number): CAUSES[number] for number in np.unique(faulty["controller.cause"]).astype(int)}
-        cause = drawn(faulty, "controller.cause", "with the fault", VERMILION, 1.0, held=True)
+    if roles.CAUSE in (faulty.dtype.names or ()):  # a controller of somebody else's need not have it
+        found = {float(number): CAUSES[number] for number in np.unique(faulty[roles.CAUSE]).astype(int)}
+        cause = drawn(faulty, roles.CAUSE, "with the fault", VERMILION, 1.0, held=True)
         panels.append(Panel("cause", [lasting, cause], bounds=(0.5, len(CAUSES) + 0.5), ticks=found, height=0.55))
     return panels
 

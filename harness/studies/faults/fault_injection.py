@@ -15,13 +15,14 @@ from fmuloop.runs import run
 from fmuloop.system import Connection, Port, System
 from fmuloop.wiring import Fit, fit
 
+from ...loop import roles
 from ...loop.built_fmus import warn_of_stale
 from ...loop.places import by_name
-from ...loop.settings import Settings, loop, running
+from ...loop.resolved import ResolvedLoop
+from ...loop.topology import ONE_UNIT, DriveUnit, Topology, of_unit
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.parts import Sum
-from ...manoeuvres.road_load import torque_limit
 from ...manoeuvres.signals import lines
 from ...metrics.evaluate import at_samples
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
@@ -45,17 +46,17 @@ PASSES = {
 COUNTED = f"{INSTANCE}.alive_sent"
 """The counter of the frames of motor control."""
 
-STATUS, T_DAMP = "controller.status", "controller.T_damp"
+STATUS, T_DAMP = roles.STATUS, roles.DAMPING_TORQUE
 
 JUDGED = (
     Port(STATUS, None),
     Port(T_DAMP, "N.m"),
-    Port("motor.omega_1_meas", "rad/s"),
-    Port("can.valid", None),
+    Port(roles.MEASURED_MOTOR_SPEED, "rad/s"),
+    Port(roles.BUS_VALID, None),
 )
 """What judges and figures read beside what every loop puts out."""
 
-KEPT = [STATUS, T_DAMP, "plant.T_gear"]
+KEPT = [STATUS, T_DAMP, roles.GEAR_TORQUE]
 """What they read of the runs without faults, of which hundreds are kept."""
 
 SLIPPERY = 1e5
@@ -86,24 +87,28 @@ class FaultRunner:
     """Runs cases; runs without faults that several cases have in common are made once.
 
     Attributes:
-        plants: in their order.
+        plants: in their order, each as often as it has drive units; a case is of one unit's signals.
         digests: of the FMUs.
     """
 
-    def __init__(self, injector: Path, settings: Mapping[str, Settings]) -> None:
+    def __init__(self, injector: Path, loops: Mapping[str, ResolvedLoop]) -> None:
         """
         Args:
             injector: FMU of SignalFaults.
-            settings: of the loop with each plant.
+            loops: with each plant.
 
         Raises:
             UserError: two plants have the same name, by which the cases are distinguished.
         """
-        by_name(settings, "plant")
-        self.plants = tuple(settings)
+        by_name(loops, "plant")
         self._injector = injector.absolute()
-        self._settings = {plant: anywhere(of_plant) for plant, of_plant in settings.items()}
-        self.digests = digests(map(self._system, settings))
+        self._loops = {
+            unit.named(Path(plant).stem) if unit.name else plant: (anywhere(resolved), unit)
+            for plant, resolved in loops.items()
+            for unit in resolved.settings.topology.units
+        }
+        self.plants = tuple(self._loops)
+        self.digests = digests(map(self._system, self.plants))
         self._made: dict[Any, np.ndarray] = {}
         self._fitted: dict[str, Fit] = {}
 
@@ -126,21 +131,18 @@ class FaultRunner:
 
     def limits(self, plant: str) -> Limits:
         """As the parameters of the controller say."""
-        controller = self._fit(plant).interfaces["controller"]
-        given = self._settings[plant].parameters
+        resolved, unit = self._loops[plant]
 
         def value(name: str) -> float:
-            variable = controller.variables.get(name)
-            start = float(variable.start) if variable and variable.start else np.inf
-            return float(given.get(f"controller.{name}", start))
+            return float(resolved.value(unit.own(f"controller.{name}"), np.inf))
 
-        share = share_of(self._T_max(plant))
+        share = share_of(resolved.T_max)
         return Limits(value("T_max"), value("T_add_max"), value("T_take_max"), value("omega_max"), share)
 
     def without_status(self, plant: str) -> str | None:
         """The file of a controller of somebody else that does not tell its status."""
-        fitted = self._fit(plant)
-        return fitted.file(STATUS) if STATUS in fitted.absent else None
+        fitted, status = self._fit(plant), self._loops[plant][1].own(STATUS)
+        return fitted.file(status) if status in fitted.absent else None
 
     def _shared(self, plant: str, situation: str, noise: int, on_ice: tuple[Fault, ...], control: bool) -> np.ndarray:
         key = plant, situation, noise, on_ice, control
@@ -159,25 +161,22 @@ class FaultRunner:
         faults: Sequence[Fault] = (),
         control: bool = True,
     ) -> np.ndarray:
-        manoeuvre = for_car(_with(on_ice, SITUATIONS[situation].manoeuvre), self._T_max(plant))
+        manoeuvre = for_car(_with(on_ice, SITUATIONS[situation].manoeuvre), self._loops[plant][0].T_max)
         road = {**manoeuvre.road, "mu": ICE} if on_ice else manoeuvre.road
-        parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise)
-        settings = running(self._settings[plant].replace(control=control))
-        parameters |= dict(settings.parameters) | _parameters(faults, noise)
-        inputs = dict(signals(manoeuvre, control))
+        loop, unit = self._loops[plant]
+        resolved, topology = loop.replace(control=control), loop.settings.topology
+        parameters = start(replace(manoeuvre, road=_of_plant(road, self._fit(plant))), noise, topology)
+        parameters |= dict(resolved.runs.parameters) | _parameters(faults, noise, unit)
+        inputs = dict(signals(manoeuvre, control, topology=topology))
         for fault in faults:
             if fault.kind.number == SWITCHED_OFF:
-                inputs["controller.enable"] = partial(np.less_equal, fault.end)
+                inputs[unit.own(roles.ENABLE)] = partial(np.less_equal, fault.end)
         given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
-        system = with_faults(loop(settings), self._injector)
+        system = with_faults(resolved.system, self._injector, topology)
         results = run(system, Experiment(manoeuvre.duration, **given))
         if results.ended:
             raise RunEnded(f"{results.ended}: there is nothing to judge")
-        return _completed(at_samples(results))
-
-    def _T_max(self, plant: str) -> float:
-        """The largest torque of the motor in N.m; inf where its FMU does not say."""
-        return torque_limit(self._fit(plant).interfaces["motor"], self._settings[plant].parameters)
+        return _completed(at_samples(of_unit(results, unit)))
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:
@@ -186,51 +185,58 @@ class FaultRunner:
         return self._fitted[plant]
 
     def _system(self, plant: str) -> System:
-        return with_faults(loop(self._settings[plant]), self._injector)
+        resolved, _ = self._loops[plant]
+        return with_faults(resolved.system, self._injector, resolved.settings.topology)
 
 
 def _completed(run: np.ndarray) -> np.ndarray:
     """A run with what a controller has not told: the torque that it adds to the demand of the sample before, and a
     status that stands for none."""
     lacking = [name for name in (STATUS, T_DAMP) if name not in (run.dtype.names or ())]
-    demand = run["controller.T_driver"]
-    told = {STATUS: np.zeros(len(run)), T_DAMP: run["controller.T_ref"] - np.append(demand[:1], demand[:-1])}
+    demand = run[roles.DEMAND]
+    told = {STATUS: np.zeros(len(run)), T_DAMP: run[roles.REFERENCE_TORQUE] - np.append(demand[:1], demand[:-1])}
     return append_fields(run, lacking, [told[name] for name in lacking], usemask=False) if lacking else run
 
 
-def with_faults(system: System, injector: Path) -> System:
-    """The loop with SignalFaults, an FMU, between the sensors and the controller.
+def with_faults(system: System, injector: Path, topology: Topology = ONE_UNIT) -> System:
+    """The loop with SignalFaults, an FMU, between the sensors and the controller of each drive unit.
 
     Frames of motor control are counted where a run gives the input COUNTED.
     """
-    instances = dict(system.instances)
-    controller = instances.pop("controller")
-    others = {name: instances.pop(name) for name in list(instances) if name != "motor"}
+    units, motors = topology.units, topology.instances("motor")
+    injectors = {unit.instance(INSTANCE): injector for unit in units}
+    first = {name: system.instances[name] for name in (*motors, *topology.instances("controller"))}
     return replace(
         system,
-        instances={**instances, INSTANCE: injector, "controller": controller, **others},
-        connections=tuple(_through_faults(system.connections)),
-        outputs=(*system.outputs, *JUDGED),
-        offered=tuple(_through_faults(system.offered)),
-        optional={**system.optional, STATUS: None, T_DAMP: None},
-        own=system.own | {INSTANCE},
-        any_value=frozenset({INSTANCE}),
+        instances={name: first[name] for name in motors} | injectors | first | dict(system.instances),
+        connections=tuple(_through_faults(system.connections, units)),
+        outputs=(*system.outputs, *(port._replace(name=unit.own(port.name)) for unit in units for port in JUDGED)),
+        offered=tuple(_through_faults(system.offered, units)),
+        optional={**system.optional, **{unit.own(name): None for unit in units for name in (STATUS, T_DAMP)}},
+        own=system.own | injectors.keys(),
+        any_value=frozenset(injectors),
     )
 
 
-def _through_faults(connections: Iterable[Connection]) -> Iterator[Connection]:
+def _through_faults(connections: Iterable[Connection], units: Iterable[DriveUnit]) -> Iterator[Connection]:
+    passed = {
+        unit.own(f"controller.{name}"): (unit.own(f"{INSTANCE}.{sent}"), unit.own(f"{INSTANCE}.{name}"))
+        for unit in units
+        for name, sent in PASSES.items()
+    }
     for connection in connections:
-        name = connection.target.removeprefix("controller.")
-        if connection.target.startswith("controller.") and name in PASSES:
-            yield connection._replace(target=f"{INSTANCE}.{PASSES[name]}")
-            yield connection._replace(source=f"{INSTANCE}.{name}")
+        if connection.target in passed:
+            sent, gets = passed[connection.target]
+            yield connection._replace(target=sent)
+            yield connection._replace(source=gets)
         else:
             yield connection
 
 
-def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
-    """Of SignalFaults."""
-    given: dict[str, float] = {f"{INSTANCE}.seed": seed}
+def _parameters(faults: Sequence[Fault], seed: int, unit: DriveUnit) -> dict[str, float]:
+    """Of SignalFaults in a drive unit."""
+    instance = unit.instance(INSTANCE)
+    given: dict[str, float] = {f"{instance}.seed": seed}
     for k, fault in enumerate((fault for fault in faults if fault.kind.signal), 1):
         values = {
             "kind": fault.kind.number,
@@ -240,7 +246,7 @@ def _parameters(faults: Sequence[Fault], seed: int) -> dict[str, float]:
             "size": fault.size,
             "share": fault.share,
         }
-        given |= {f"{INSTANCE}.{name}_{k}": value for name, value in values.items()}
+        given |= {f"{instance}.{name}_{k}": value for name, value in values.items()}
     return given
 
 

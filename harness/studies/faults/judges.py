@@ -13,6 +13,7 @@ from math import inf
 import numpy as np
 
 from ....fmus.names import T_MAX
+from ...loop import roles
 from ...loop.places import T_S
 from ...metrics.oscillation import amplitude
 from ...metrics.spectrum import band_rms
@@ -61,14 +62,14 @@ class Judge:
 
 def excess_of_T_ref(seen: Evidence) -> float:
     """By how much T_ref is beyond T_max, N.m; inf if it is not finite."""
-    T_ref = seen.runs.faulty["controller.T_ref"]
+    T_ref = seen.runs.faulty[roles.REFERENCE_TORQUE]
     return float(np.abs(T_ref).max()) - seen.limits.T_max if np.isfinite(T_ref).all() else inf
 
 
 def excess_of_T_damp(seen: Evidence) -> float:
     """By how much what the controller adds in the direction of the demand is beyond T_add_max, or against it beyond
     T_take_max, N.m."""
-    T_damp, T_driver = seen.runs.faulty["controller.T_damp"][1:], seen.runs.faulty["controller.T_driver"][:-1]
+    T_damp, T_driver = seen.runs.faulty[roles.DAMPING_TORQUE][1:], seen.runs.faulty[roles.DEMAND][:-1]
     taken = np.where(T_damp * T_driver < 0.0, seen.limits.T_take_max, seen.limits.T_add_max)
     return float((np.abs(T_damp) - taken).max())
 
@@ -102,7 +103,7 @@ def time_to_return(seen: Evidence) -> float:
     """
     if seen.end == inf:
         return 0.0
-    healthy, valid = seen.runs.healthy["controller.status"], seen.runs.faulty["can.valid"]
+    healthy, valid = seen.runs.healthy[roles.STATUS], seen.runs.faulty[roles.BUS_VALID]
     lacks_wheel = (seen.status == WITHOUT_WHEEL_SPEED) & (healthy == WITH_WHEEL_SPEED)
     lacks_wheel[1:] &= valid[1:] & valid[:-1]
     falls_back = (seen.status == FALLBACK) & (time_since(motor_is_too_fast(seen)) > BACK)
@@ -118,9 +119,9 @@ def kick(seen: Evidence) -> float:
         return 0.0
     fell = np.flatnonzero((seen.status == FALLBACK) & (seen.t >= seen.end))
     since = seen.t[fell[-1]] if len(fell) else seen.end + BACK
-    added, usual = (run["controller.T_damp"] for run in (seen.runs.faulty, seen.runs.healthy))
+    added, usual = (run[roles.DAMPING_TORQUE] for run in (seen.runs.faulty, seen.runs.healthy))
     beyond = np.abs(added - np.clip(added, -_largest_near(-usual), _largest_near(usual)))
-    swing = np.abs(seen.runs.faulty["plant.T_gear"] - seen.runs.healthy["plant.T_gear"])
+    swing = np.abs(seen.runs.faulty[roles.GEAR_TORQUE] - seen.runs.healthy[roles.GEAR_TORQUE])
     excess = beyond - _largest_before(swing, round(0.2 / T_S))
     return float(excess[seen.t > since].max(initial=0.0)) / seen.limits.share
 
@@ -129,14 +130,16 @@ def swing_left(seen: Evidence) -> float:
     """Amplitude in N.m of the gear torque in the last 0.5 s, less that without the fault; if a motor signal is still
     wrong there, less that without control where this is larger; as of the motor of the default car."""
     last = round(0.5 / T_S)
-    left, usual, undamped = (amplitude(run["plant.T_gear"][-last:], T_S).max() for run in seen.runs)
+    left, usual, undamped = (amplitude(run[roles.GEAR_TORQUE][-last:], T_S).max() for run in seen.runs)
     return float(left - (max(usual, undamped) if seen.lasts else usual)) / seen.limits.share
 
 
 def ratio_of_rms(seen: Evidence) -> float:
     """Gear torque from 5 to 50 Hz from the fault on, over that without control."""
     later = seen.t >= seen.begin - 0.1
-    with_fault, undamped = (band_rms(run["plant.T_gear"][later], T_S) for run in (seen.runs.faulty, seen.runs.undamped))
+    with_fault, undamped = (
+        band_rms(run[roles.GEAR_TORQUE][later], T_S) for run in (seen.runs.faulty, seen.runs.undamped)
+    )
     return with_fault / max(undamped, LEAST_RMS * seen.limits.share)
 
 
@@ -144,7 +147,7 @@ def ratio_of_swing(seen: Evidence) -> float:
     """Largest amplitude of the gear torque from the fault on, over that without control, or over that without the
     fault where this is larger."""
     later = seen.t >= seen.begin
-    with_fault, without, undamped = (amplitude(run["plant.T_gear"][later], T_S).max() for run in seen.runs)
+    with_fault, without, undamped = (amplitude(run[roles.GEAR_TORQUE][later], T_S).max() for run in seen.runs)
     return float(with_fault) / max(float(undamped), float(without), LEAST_SWING * seen.limits.share)
 
 

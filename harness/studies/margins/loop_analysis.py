@@ -11,9 +11,9 @@ from fmuloop.parameter_changes import require_constant
 from toolground.errors import UserError
 
 from ....fmus.building.builds import fmu_of
-from ...loop.settings import Settings
+from ...loop.resolved import ResolvedLoop
 from ...manoeuvres.catalogue import MANOEUVRES
-from ...manoeuvres.for_car import for_car, largest_torque
+from ...manoeuvres.for_car import for_car
 from ...metrics.estimate import EstimateMetrics, estimate_metrics
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
@@ -152,25 +152,25 @@ def linear_part(part: Part, controller: str, parameters: Mapping[str, Mapping[st
     return At(part.plant, speed, loop, drive_train_mode(loop, alone(point).frequency), margins(loop))
 
 
-def run_of(run: Run, settings: Mapping[str, Settings]) -> tuple[Metrics, EstimateMetrics]:
-    """What a run of the loop is worth; settings by plant."""
+def run_of(run: Run, loops: Mapping[str, ResolvedLoop]) -> tuple[Metrics, EstimateMetrics]:
+    """What a run of the loop is worth; loops by plant."""
     changed = {} if run.parameter is None else {run.parameter: run.value}
-    manoeuvre = for_car(MANOEUVRES[run.manoeuvre], largest_torque(settings[run.plant]))
-    results = simulate(manoeuvre, settings[run.plant].with_parameters(changed))
+    manoeuvre = for_car(MANOEUVRES[run.manoeuvre], loops[run.plant].T_max)
+    results = simulate(manoeuvre, loops[run.plant].with_parameters(changed))
     return evaluate(results, manoeuvre), estimate_metrics(results)
 
 
-def analyse(settings: Mapping[str, Settings]) -> Analysis:
+def analyse(loops: Mapping[str, ResolvedLoop]) -> Analysis:
     """Analyses the loop.
 
     Args:
-        settings: by the names of plants of the project, with one of its controllers.
+        loops: by the names of plants of the project, with one of its controllers.
 
     Raises:
         NotLinear, UserError: see `linear_part`.
     """
-    plants, controller = list(settings), str(next(iter(settings.values())).controller)
-    parameters = {plant: settings[plant].parameters for plant in plants}
+    plants, controller = list(loops), str(next(iter(loops.values())).settings.controller)
+    parameters = {plant: loops[plant].settings.parameters for plant in plants}
     for given in parameters.values():
         require_constant(given, "a linear loop")
     pieces = [*(f"{speed:g}" for speed in SPEEDS), *BY_NAME, "backlash"]
@@ -187,7 +187,7 @@ def analyse(settings: Mapping[str, Settings]) -> Analysis:
         for parameter, value in changed[plant].items()
         for factor in FACTORS
     ]
-    worth = dict(zip(runs, run_many(partial(run_of, settings=settings), runs, label="runs"), strict=True))
+    worth = dict(zip(runs, run_many(partial(run_of, loops=loops), runs, label="runs"), strict=True))
 
     def depends(plant: str, manoeuvre: str, parameter: str) -> sensitivity.Sensitivity:
         value = changed[plant][parameter]

@@ -8,6 +8,7 @@ from fmuloop.argument_kinds import require_each
 from ...design.loop_parameters import loop_parameters
 from ...loop.own_controller import with_equations
 from ...loop.places import PLACES, PLANTS
+from ...loop.resolved import as_given
 from ...loop.settings import RunChanges, Settings
 from .loop_analysis import Analysis
 from .loop_analysis import analyse as analysis
@@ -45,7 +46,7 @@ def analyse(
     common = Settings(controller=controller).replace(**changes)
     return analysis(
         {
-            plant: common.replace(plant=plant).with_parameters(loop_parameters(car or {}, plant, controller))
+            plant: as_given(common, plant=plant).with_parameters(loop_parameters(car or {}, plant, controller))
             for plant in plants
         }
     )

@@ -9,12 +9,13 @@ import numpy as np
 
 from fmuloop.errors import RunEnded, SimulationError, UnpackingError
 from fmuloop.results import Results
-from fmuloop.wiring import fit
 from toolground.collected_warnings import warn_once
 from toolground.plain_text import plain
 
 from ...design.uncertainty_box import changed
-from ...loop.settings import Settings, loop
+from ...loop import roles
+from ...loop.resolved import ResolvedLoop
+from ...loop.topology import DriveUnit, of_unit
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
@@ -24,22 +25,24 @@ from ...simulation.simulate import simulate
 from .draws import draw
 from .outcome import METRICS, PEAK, Case, Outcome
 
-Given = Mapping[tuple[str, str], Settings]
-"""The settings of the loops by the names of plant and controller."""
+Given = Mapping[tuple[str, str], ResolvedLoop]
+"""The loops by the names of plant and controller."""
 
 
 class Loop(NamedTuple):
     """A plant with a controller.
 
     Attributes:
-        settings: of its runs, with absolute paths, so that any process can make them.
-        blocks: the parameters of each block by its place, as they are without a deviation.
+        resolved: with absolute paths, so that any process can make its runs.
+        blocks: the parameters of each block but the controllers, as they are without a deviation.
         digests: of the FMUs.
+        unit: whose signals count.
     """
 
-    settings: Settings
+    resolved: ResolvedLoop
     blocks: Mapping[str, Mapping[str, float]]
     digests: Mapping[Path, str]
+    unit: DriveUnit = DriveUnit()
 
 
 class CaseRunner:
@@ -52,7 +55,11 @@ class CaseRunner:
 
     def __init__(self, given: Given, seed: int) -> None:
         self.seed = seed
-        self.loops = {key: _loop(settings) for key, settings in given.items()}
+        self.loops = {
+            (unit.named(plant), controller): _loop(resolved, unit)
+            for (plant, controller), resolved in given.items()
+            for unit in resolved.settings.topology.units
+        }
         for (plant, _), one in self.loops.items():
             if not any(name.startswith("plant.") for name in changed(one.blocks, draw(1, seed).deviation)):
                 warn_once(f"{plant} has no parameter that is drawn: all cars are the same one, with other sensors")
@@ -69,8 +76,8 @@ class CaseRunner:
         """
         one, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
         require_same_fmus(one.digests)
-        settings = one.settings.with_parameters(changed(one.blocks, drawn.deviation))
-        return simulate(self.manoeuvre(case), settings, control=control, seed=drawn.noise)
+        resolved = one.resolved.with_parameters(changed(one.blocks, drawn.deviation))
+        return of_unit(simulate(self.manoeuvre(case), resolved, control=control, seed=drawn.noise), one.unit)
 
     def outcome(self, case: Case) -> Outcome:
         """What came of a case; one that an FMU ends has no metrics.
@@ -87,7 +94,7 @@ class CaseRunner:
         except SimulationError as reason:
             return Outcome(case, {metric.name: nan for metric in METRICS}, plain(reason))
         metrics = evaluate(results, self.manoeuvre(case))
-        peak = float(np.abs(results["plant.T_gear"]).max()) / self._T_max(case)
+        peak = float(np.abs(results[roles.GEAR_TORQUE]).max()) / self._T_max(case)
         return Outcome(case, {m.name: peak if m is PEAK else m.of(metrics) for m in METRICS})
 
     def manoeuvre(self, case: Case) -> Manoeuvre:
@@ -100,9 +107,12 @@ class CaseRunner:
 
     def _T_max(self, case: Case) -> float:
         """The largest torque of the motor in N.m; inf where its FMU does not say."""
-        return self.loops[case.plant, case.controller].blocks["motor"].get("T_max", np.inf)
+        one = self.loops[case.plant, case.controller]
+        return one.blocks[one.unit.instance("motor")].get("T_max", np.inf)
 
 
-def _loop(settings: Settings) -> Loop:
-    system = loop(settings)
-    return Loop(anywhere(settings), fit(system).parameters(settings.parameters), digests([system]))
+def _loop(resolved: ResolvedLoop, unit: DriveUnit) -> Loop:
+    controllers = resolved.settings.topology.instances("controller")
+    every = resolved.fit.parameters(resolved.settings.parameters)
+    blocks = {instance: parameters for instance, parameters in every.items() if instance not in controllers}
+    return Loop(anywhere(resolved), blocks, digests([resolved.system]), unit)

@@ -62,7 +62,7 @@ def write(outcomes: Sequence[Outcome], runner: CaseRunner, caption: str, folder:
     write_metrics([each.record for each in found], summary)
     files = [draws, summary]
     for plant in dict.fromkeys(each.plant for each in found):
-        files += plot_distributions(found, plant, caption, figures / f"robustness_{plant}")
+        files += plot_distributions(found, plant, caption, figures / f"robustness_{plant}".replace(" ", "_"))
     for each in found:
         if each.controller == found[0].controller and not each.worst.reason:
             with suppress(SimulationError):  # a car that is not fit to be driven without damping
@@ -77,7 +77,7 @@ def write_draw(outcomes: Sequence[Outcome], runner: CaseRunner, caption: str, fo
     for outcome in outcomes:
         case = outcome.case
         if case.controller == first and not outcome.reason:
-            stem = folder / f"draw_{case.number}_{case.plant}_{case.manoeuvre}"
+            stem = folder / f"draw_{case.number}_{case.plant}_{case.manoeuvre}".replace(" ", "_")
             files.append(stem.with_suffix(".csv"))
             write_csv(runner.results(case), files[-1])
             files += plot_draw(runner, case, caption, stem)
@@ -86,4 +86,4 @@ def write_draw(outcomes: Sequence[Outcome], runner: CaseRunner, caption: str, fo
 
 def figure_name(summary: Summary) -> str:
     """Of the figure of the worst draw of a summary."""
-    return f"worst_{summary.plant}_{summary.manoeuvre}"
+    return f"worst_{summary.plant}_{summary.manoeuvre}".replace(" ", "_")

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...loop import roles
 from ...loop.places import T_S
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import added_torque, at_samples
@@ -49,17 +50,17 @@ def _both_of(name: str) -> list[Signal]:
     return [Signal("off", name, WITHOUT, *UNDAMPED), Signal("on", name, DAMPED, *CONTROLLERS[0], True)]
 
 
-DEMAND = Signal("off", "controller.T_driver", "demand")
+DEMAND = Signal("off", roles.DEMAND, "demand")
 
 PANELS: Mapping[str, list[Signal]] = {
-    "gear torque in N·m": [*_both_of("plant.T_gear"), DEMAND],
+    "gear torque in N·m": [*_both_of(roles.GEAR_TORQUE), DEMAND],
     "motor torque in N·m": [
-        Signal("on", "controller.T_ref", f"to the motor, {DAMPED}", *CONTROLLERS[0], True),
+        Signal("on", roles.REFERENCE_TORQUE, f"to the motor, {DAMPED}", *CONTROLLERS[0], True),
         Signal("on", ADDED, "of it added by the control", GREEN, SOLID, 1.0),
         DEMAND,
     ],
-    "motor speed in rad/s": [*_both_of("plant.omega_1"), Signal("on", "plant.omega_2", f"wheels, {DAMPED}")],
-    "body acceleration in m/s²": _both_of("plant.a_body"),
+    "motor speed in rad/s": [*_both_of(roles.MOTOR_SPEED), Signal("on", roles.WHEEL_SPEED, f"wheels, {DAMPED}")],
+    "body acceleration in m/s²": _both_of(roles.BODY_ACCELERATION),
 }
 """What is drawn over time, by the labels of the panels."""
 
@@ -104,19 +105,19 @@ def _curves(signal: Signal, runs: Runs) -> Iterator[Curve]:
 
 def _values(signal: Signal, run: np.ndarray) -> np.ndarray:
     if signal.name == ADDED:
-        return added_torque(run["controller.T_driver"], run["controller.T_ref"])
+        return added_torque(run[roles.DEMAND], run[roles.REFERENCE_TORQUE])
     return run[signal.name]
 
 
 def _spectra(runs: Runs) -> list[Panel]:
     """Amplitudes of demand and gear torque, and the one over the other."""
-    demand, looks = runs[WITHOUT]["controller.T_driver"], looks_of(runs)
+    demand, looks = runs[WITHOUT][roles.DEMAND], looks_of(runs)
     f, amplitude = amplitude_spectrum(demand, T_S)
     at = f <= TO_50_HZ[1]
     f = f[at]
     amplitudes, ratios = list[Curve](), list[Curve]()
     for name, run in runs.items():
-        T_gear = run["plant.T_gear"]
+        T_gear = run[roles.GEAR_TORQUE]
         g, answer = frequency_response(demand, T_gear, T_S)
         amplitudes.append(Curve(f, amplitude_spectrum(T_gear, T_S)[1][at], name, *looks[name]))
         ratios.append(Curve(f, np.interp(f, g, np.abs(answer)), name, *looks[name]))

@@ -15,7 +15,7 @@ from docs.studies.healthy_hours import (
     contradiction,
     disobeyed,
     drive,
-    found,
+    residuals_on,
     worst,
 )
 from driveline.harness.simulation.simulate import simulate
@@ -97,7 +97,7 @@ def short(native, monkeypatch):
 
 def test_a_healthy_drive_is_without_fallback(short):
     for road in ROADS.values():
-        of = found(road, 3)
+        of = residuals_on(road, 3)
         assert (of.samples, of.fallback) == (1501, 0)
         assert all(0.0 <= residual < 1.0 for residual in of[3:]), "of what leads to fallback"
         assert of.jump > 0.0
@@ -111,9 +111,9 @@ def test_a_drive_with_a_wheel_that_is_told_far_too_small_shows_as_fallback(short
         return manoeuvre, errors | {"can.g_w2": 0.8}
 
     seed = next(seed for seed in range(1, 100) if drive(ROADS["design model"], seed)[0].v_0 > 30.0)
-    assert found(ROADS["design model"], seed).fallback == 0
+    assert residuals_on(ROADS["design model"], seed).fallback == 0
     monkeypatch.setattr(healthy_hours, "drive", with_another_wheel)
-    of = found(ROADS["design model"], seed)
+    of = residuals_on(ROADS["design model"], seed)
     assert of.fallback > 0
     assert of.contradiction > 1.0
 
@@ -123,7 +123,7 @@ def test_a_drive_whose_half_swings_all_count_has_samples_with_less_damping(short
         manoeuvre, errors = drive(road, seed)
         return manoeuvre, errors | {"controller.swing": 1e-3, "controller.swing_decay": 0.01}
 
-    assert found(ROADS["design model"], 7).feeding == 0
+    assert residuals_on(ROADS["design model"], 7).feeding == 0
     monkeypatch.setattr(healthy_hours, "drive", with_a_low_count)
-    of = found(ROADS["design model"], 7)
+    of = residuals_on(ROADS["design model"], 7)
     assert 0 < of.feeding < of.samples

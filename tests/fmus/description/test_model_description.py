@@ -192,9 +192,12 @@ def test_names_that_differ_in_case_only_are_refused():
     class Twice(NamedTuple):
         T_land: Annotated[float, Real("N.m", "a torque")] = 0.0
         t_land: Annotated[float, Real("s", "a time")] = 0.0
+        V: Annotated[float, Real("m/s", "a speed")] = 0.0
+        v: Annotated[float, Real("V", "a voltage")] = 0.0
 
     fmu = Fmu(replace(block, Input=Twice), stop_time=1.0)
-    with pytest.raises(ValueError, match="the variables T_land and t_land differ in case only"):
+    all_at_once = "the variables T_land and t_land differ in case only; the variables V and v differ in case only"
+    with pytest.raises(ValueError, match=all_at_once):
         model_description(fmu, BuildKind({}, {}, ""), "")
 
 

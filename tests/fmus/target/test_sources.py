@@ -16,7 +16,8 @@ from fmutesting.together import together
 from driveline.fmus.catalogue import CONTROLLERS, FMUS
 from driveline.harness.exchange.target.comparison import responses
 from driveline.harness.exchange.target.offline_cases import Case, recorded
-from driveline.harness.loop.settings import Settings, loop
+from driveline.harness.loop.resolved import as_given
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES, USUAL_MANOEUVRES
 from driveline.models.controller import T_S
 from driveline.models.damping_controller import BLOCK as CONTROLLER
@@ -47,7 +48,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 def fed(name: str, fmus: Path) -> Case:
     """What the controller gets in a manoeuvre; to be copied where it is changed."""
     settings = Settings(folder=fmus, build="native")
-    return recorded(MANOEUVRES[name], loop(settings), CONTROLLER.Input._fields, settings)
+    return recorded(MANOEUVRES[name], as_given(settings), CONTROLLER.Input._fields)
 
 
 def outputs(programs: dict[str, Path], precision: str, inputs: np.ndarray) -> np.ndarray:

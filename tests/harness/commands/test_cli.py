@@ -16,7 +16,7 @@ from fmutesting.foreign import build_car, tampered
 
 from driveline.harness.commands import build
 from driveline.harness.commands.cli import COMMANDS, PURPOSES, SHELLS
-from driveline.harness.commands.settings import settings
+from driveline.harness.commands.settings import resolved
 from driveline.harness.commands.target import ACTIONS
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
@@ -365,7 +365,7 @@ def test_an_fmu_of_somebody_else_takes_its_place_under_its_own_names(simulate, t
 def test_every_block_can_be_named(built):
     files = {place: str(built / f"{names[0]}.fmu") for place, names in PLACES.items()}
     args = given("simulate", *(word for place, file in files.items() for word in (f"--{place}", file)))
-    assert settings(args, args.plant, args.controller).blocks == files
+    assert resolved(args, args.plant, args.controller).settings.blocks == files
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from fmutesting.foreign import SMALLEST_CONTROLLER, build_car, build_relay, tamp
 
 from driveline.fmus.errors import ParameterFileError
 from driveline.harness.commands.cli import main
-from driveline.harness.commands.settings import all_settings, settings
+from driveline.harness.commands.settings import all_loops, resolved
 from driveline.harness.loop import built_fmus
 from driveline.harness.loop.places import PLANTS
 from fmuloop.errors import WiringError
@@ -22,7 +22,7 @@ def given(built):
 
     def parameters(*options, plant="TwoMassDriveline", controller="DampingController"):
         run = ["simulate", "--plant", str(plant), "--fmus", str(built), "--build", "python"]
-        return settings(record(*run, *options), str(plant), controller).parameters
+        return resolved(record(*run, *options), str(plant), controller).settings.parameters
 
     return parameters
 
@@ -121,8 +121,8 @@ def test_of_several_controllers_a_value_and_a_mapping_are_for_those_that_have_th
 
     def parameters(*options):
         args = record(*run, *both, *options)
-        found = all_settings(args, args.plant, args.controller)
-        return {name: (made.parameters, made.mapping) for (_, name), made in found.items()}
+        found = all_loops(args, args.plant, args.controller)
+        return {name: (loop.settings.parameters, loop.settings.mapping) for (_, name), loop in found.items()}
 
     given = parameters("--set", "controller.k_d=1.2", "--set", "motor.tau=0.004", "--set", "controller.k_d@1=2")
     common = {"motor.tau": 0.004}
@@ -148,7 +148,7 @@ def test_what_several_loops_need_is_built_at_once(both_built, monkeypatch):
     needed = []
     monkeypatch.setattr(built_fmus, "BUILD", both_built)
     monkeypatch.setattr(built_fmus, "_in_cache", lambda each: needed.append(each) or (both_built, []))
-    all_settings(record("compare", "--fmus", str(both_built)), (), ["DampingController"])
+    all_loops(record("compare", "--fmus", str(both_built)), (), ["DampingController"])
     assert [set(PLANTS) <= set(each["native"]) for each in needed] == [True]
 
 

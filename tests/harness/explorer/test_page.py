@@ -16,12 +16,12 @@ from driveline.fmus.building.builds import build_fmus
 from driveline.fmus.building.parameter_files import read_parameters, read_vehicle
 from driveline.harness.commands import explore
 from driveline.harness.commands.cli import main
-from driveline.harness.commands.settings import all_settings
+from driveline.harness.commands.settings import all_loops
 from driveline.harness.explorer import module
 from driveline.harness.explorer.content import content
-from driveline.harness.loop.given_parameters import built_with
 from driveline.harness.loop.places import PLANTS
-from driveline.harness.loop.settings import settings
+from driveline.harness.loop.resolved import as_given, resolve_all
+from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.demand_shape import step_of
 from driveline.harness.manoeuvres.parts import points
@@ -47,7 +47,7 @@ def data(native: Path, native_builder: Any) -> dict[str, Any]:
     loops()
     native_builder(EVERY[WASHOUT], native.parent)
     args = explore.Arguments(fmus=native.parent, build="native")
-    return content(all_settings(args, (), (OURS, WASHOUT)))
+    return content(all_loops(args, (), (OURS, WASHOUT)))
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +94,8 @@ def test_the_metrics_take_the_band_of_the_car(data: dict[str, Any], native: Path
     vehicle = tmp_path / "car.toml"
     vehicle.write_text("C = 30.0\nJ_2 = 1.5\n")
     for answer, plant, file in ((asking[0], DESIGN, vehicle), (asking[1], VEHICLE, vehicle), (asking[2], DESIGN, None)):
-        (given,) = built_with([settings(plant, folder=native.parent, build="native")], file, None, {})
+        settings = {(plant, OURS): Settings(plant, folder=native.parent, build="native")}
+        (given,) = resolve_all(settings, file).values()
         expected = evaluate(simulate(MANOEUVRES["tipin15"], given), MANOEUVRES["tipin15"])
         for name in ("gear_torque_rms", "jerk_rms"):
             assert answer["worth"][name] == pytest.approx(getattr(expected, name), rel=1e-5), (plant, file, name)
@@ -105,7 +106,7 @@ def test_the_sliders_of_fmus_built_for_a_car_begin_at_that_car(plant: str, tmp_p
     loops()
     vehicle = ROOT / "examples" / "cars" / "van.toml"
     list(build_fmus([plant, "MotorTorqueLoop", "WheelSpeedCan", OURS], tmp_path, "native", vehicle=vehicle))
-    page, van = content({(plant, OURS): settings(plant, folder=tmp_path, build="native")}), read_vehicle(vehicle)
+    page, van = content({(plant, OURS): as_given(plant, folder=tmp_path, build="native")}), read_vehicle(vehicle)
     of_plant = van.keys() & page["loops"]["fmus"][plant]["parameters"].keys()
     assert {name: page["files"]["car"].get(name) for name in of_plant} == {name: van[name] for name in of_plant}
     assert of_plant > {"m", "r", "i", "phi_B", "c_slip"}
@@ -233,7 +234,7 @@ def test_a_block_of_ones_own_is_compiled_into_the_page(native: Path, native_buil
     loops()
     copyfile(native_builder(EVERY[WASHOUT], native.parent), tmp_path / "Mine.fmu")
     args = explore.Arguments(fmus=native.parent, build="native", set=(("plant.v_0", 8.0),))
-    made = content(all_settings(args, [DESIGN], [str(tmp_path / "Mine.fmu")]))
+    made = content(all_loops(args, [DESIGN], [str(tmp_path / "Mine.fmu")]))
     (run,) = asked(tmp_path, made, {"controller": "Mine"})["answers"]
     changes: Any = {"controller": WASHOUT, "folder": native.parent, "build": "native"}
     results = simulate(MANOEUVRES["tipin15"], DESIGN, parameters={"plant.v_0": 8.0}, **changes)
@@ -264,7 +265,7 @@ def test_without_zig_and_module_or_recording_one_line_says_so_and_nothing_is_bui
     monkeypatch.setattr(module, "PACKAGED", tmp_path / "none")
     monkeypatch.setattr(module, "user_cache", lambda: tmp_path)
     monkeypatch.setattr("fmublocks.native.compiler.find_spec", lambda _: None)
-    monkeypatch.setattr(explore, "all_settings", pytest.fail)
+    monkeypatch.setattr(explore, "all_loops", pytest.fail)
     assert main(["explore", "--output", str(tmp_path / "page.html")]) == 2
     said = r"driveline explore: there is no Zig .* pip install ziglang; or .* from a wheel\n"
     assert re.fullmatch(said, capsys.readouterr().err)

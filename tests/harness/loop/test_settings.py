@@ -9,9 +9,8 @@ from fmutesting.foreign import build_car
 
 from driveline.fmus.building.builds import build_fmus
 from driveline.harness.loop.arguments import ARGUMENTS
-from driveline.harness.loop.built_fmus import frequency_of_plant
-from driveline.harness.loop.given_parameters import built_with
 from driveline.harness.loop.places import PLACES, PLANTS
+from driveline.harness.loop.resolved import as_given, frequency_of_plant, resolve_all
 from driveline.harness.loop.settings import Changes, Settings, own_frequency, settings
 from fmuloop.errors import WiringError
 from fmuloop.system import Scheme
@@ -80,11 +79,11 @@ def test_fmus_tell_the_frequency_of_the_car_that_they_were_built_with(
 ) -> None:
     van = ROOT / "examples" / "cars" / "van.toml"
     list(build_fmus(PLANTS, tmp_path, "python", vehicle=van))
-    usual = [Settings(plant, folder=built, build="python") for plant in PLANTS]
-    for before, given in zip(usual, built_with(usual, van, None, {}), strict=True):
-        assert frequency_of_plant(before) is None
-        assert frequency_of_plant(before.replace(folder=tmp_path)) == given.frequency
+    usual = {(plant, "DampingController"): Settings(plant, folder=built, build="python") for plant in PLANTS}
+    for before, given in zip(usual.values(), resolve_all(usual, van).values(), strict=True):
+        assert frequency_of_plant(as_given(before)) is None
+        assert frequency_of_plant(as_given(before, folder=tmp_path)) == given.frequency
     assert caplog.text == ""
-    theirs = usual[0].replace(plant=build_car(tmp_path / "theirs"))
-    assert frequency_of_plant(theirs) is None
+    theirs = build_car(tmp_path / "theirs")
+    assert frequency_of_plant(as_given(theirs, folder=built, build="python")) is None
     assert "tells no C, J_1 and J_2: the band of the metrics is that of the default car" in caplog.text

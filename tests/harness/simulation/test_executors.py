@@ -18,6 +18,7 @@ from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tune import tune
 from driveline.harness.design.search.tuning_runs import Run
 from driveline.harness.design.uncertainty_box import NOMINAL
+from driveline.harness.loop.resolved import as_given
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.simulation.case_archive import CaseArchive, Table
@@ -103,7 +104,7 @@ def test_runs_on_a_cluster_are_those_here_and_stay_loaded(cluster, native):
 @pytest.mark.slow
 def test_faults_and_search_on_a_cluster_are_those_here(cluster, native, native_builder, tmp_path):
     settings = Settings(folder=native.parent, build="native")
-    faults = FaultRunner(native_builder(FMU, tmp_path), {"TwoMassDriveline": settings})
+    faults = FaultRunner(native_builder(FMU, tmp_path), {"TwoMassDriveline": as_given(settings)})
     search = CostEvaluation(settings, runs=(Run("TwoMassDriveline", "tipin15", NOMINAL, 1, 1.0),))
 
     def searched(name, **where):

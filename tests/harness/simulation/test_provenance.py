@@ -17,7 +17,7 @@ from fmpy.util import read_csv
 
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.jobs import distinguishing
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.resolved import as_given
 from driveline.harness.simulation import provenance, simulate
 from driveline.harness.simulation.provenance import require_same_run
 from fmublocks.origin import ENTRY
@@ -199,7 +199,7 @@ def test_an_unknown_parameter_is_named_although_there_are_results_of_another_run
 
 
 def told_apart(**settings: Any) -> dict[str, Any]:
-    return distinguishing(Settings(**settings))
+    return distinguishing(as_given(**settings))
 
 
 def test_an_fmu_that_was_built_for_another_car_makes_another_run(both_built: Path, tmp_path: Path) -> None:

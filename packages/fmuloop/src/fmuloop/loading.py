@@ -27,7 +27,7 @@ from .row_layout import Layout
 from .schedule import described, transfers
 from .steps import MakeSteps, interpreted
 from .system import System
-from .wiring import Fit, fit, require, unknown
+from .wiring import Fit, fitted_for, require, unknown
 
 LOG = logging.getLogger(__name__)
 
@@ -76,7 +76,7 @@ class IsolatedLoop:
 
 @contextmanager
 def loaded(
-    system: System,
+    system: System | Fit,
     inputs: Iterable[str] = (),
     parameters: Iterable[str] = (),
     folder: Path | None = None,
@@ -85,6 +85,7 @@ def loaded(
     """The FMUs of a system, loaded and wired, for any number of runs. Afterwards they are gone.
 
     Args:
+        system: or what is known of it already.
         inputs, parameters: `instance.variable` of those that the runs will give, if they are known, so that
             all that is wrong is named at once.
         folder: in which the FMUs are unpacked; None: that for temporary files.
@@ -94,13 +95,13 @@ def loaded(
         WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
         SimulationError: an FMU cannot be loaded.
     """
-    fitted = fit(system, inputs, parameters)
+    fitted = fitted_for(system, inputs, parameters)
     if reason := why_not():
         warn_once(reason)
     warn_of_absent(fitted)
     LOG.info("under the propagated scheme, %s", described(transfers(fitted.system, fitted.interfaces)))
     # an FMU that exits, crashes or hangs would take the caller with it
-    load = _here if system.instances.keys() <= system.own else _isolated
+    load = _here if fitted.interfaces.keys() <= fitted.system.own else _isolated
     with load(fitted, folder, make_steps) as loop:
         yield loop
 

@@ -13,13 +13,17 @@ from .loading import IsolatedLoop, loaded
 from .master import Loop
 from .results import Results
 from .system import System
+from .wiring import Fit
 
 MOST_KEPT = 8
 """Systems that are kept loaded at a time."""
 
 
-def run(system: System, experiment: Experiment) -> Results:
+def run(system: System | Fit, experiment: Experiment) -> Results:
     """Loads a system of FMUs, unless it is kept loaded, and runs it; results as of `Loop.run`.
+
+    Args:
+        system: or what is known of it already.
 
     Raises:
         WiringError: the FMUs do not fit together, or do not fit the inputs and parameters.
@@ -28,7 +32,7 @@ def run(system: System, experiment: Experiment) -> Results:
     names = experiment.inputs, experiment.parameters
     with unswallowed():
         if _here.kept is not None:
-            return _here.kept.loop(system, *names).run(experiment)
+            return _here.kept.loop(system if isinstance(system, System) else system.system, *names).run(experiment)
         with loaded(system, *names) as loop:
             return loop.run(experiment)
 

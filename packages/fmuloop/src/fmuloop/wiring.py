@@ -36,6 +36,15 @@ class Fit(NamedTuple):
         """Of the FMU that a variable `instance.variable` belongs to."""
         return self.interfaces[name.partition(".")[0]].path.name
 
+    def start(self, name: str, otherwise: float) -> float:
+        """With which a Real `instance.variable` starts, in the loop's unit; `otherwise` if its FMU does not tell."""
+        instance, _, own = name.partition(".")
+        interface = self.interfaces[instance]
+        variable = interface.variables.get(own)
+        if variable is None or variable.type != "Real" or not variable.start:
+            return otherwise
+        return float(variable.start) * interface.factors.get(own, 1.0)
+
     def parameters(self, values: Mapping[str, float]) -> dict[str, dict[str, float]]:
         """The numbers that the parameters have, by instance and name: those that are given, and where others start."""
         numbers: dict[str, dict[str, float]] = {}
@@ -62,11 +71,23 @@ def fit(system: System, inputs: Iterable[str] = (), parameters: Iterable[str] = 
     absent = {name: value for name, value in system.optional.items() if _is_absent(name, interfaces)}
     added = [wire for wire in system.offered if not any(_is_absent(end, interfaces) for end in wire[:2])]
     there = system.without(absent)
-    fitted = Fit(replace(there, connections=(*there.connections, *added)), interfaces, absent)
+    fitted = Fit(replace(there, connections=(*there.connections, *added), offered=()), interfaces, absent)
     problems += _duplicates(interfaces)
     misfits = [*_misfits(fitted.system, interfaces)]
     require([*problems, *misfits, *unknown(fitted, inputs, parameters), *_drafts(fitted.system, interfaces)])
     return fitted
+
+
+def fitted_for(system: System | Fit, inputs: Iterable[str], parameters: Iterable[str]) -> Fit:
+    """As `fit`, of a system whose FMUs are known to fit the names alone.
+
+    Raises:
+        WiringError: lists what does not fit.
+    """
+    if isinstance(system, System):
+        return fit(system, inputs, parameters)
+    require(unknown(system, inputs, parameters))
+    return system
 
 
 def require(problems: Iterable[str]) -> None:

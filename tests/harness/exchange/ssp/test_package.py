@@ -15,10 +15,11 @@ from fmutesting.foreign import build_car
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
 
 from driveline.harness.commands.cli import main
-from driveline.harness.exchange.ssp.layout import BOXES, PLACES
+from driveline.harness.exchange.ssp.layout import Layout
 from driveline.harness.exchange.ssp.loop_with_source import SIGNALS, SOURCE, points, with_source
-from driveline.harness.loop.places import CONNECTIONS, PLANTS, STEP_SIZE
+from driveline.harness.loop.places import CONNECTIONS, PLACES, PLANTS, STEP_SIZE
 from driveline.harness.loop.settings import loop
+from driveline.harness.loop.topology import ONE_UNIT, DriveUnit, Topology
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.signals import FlatSine, Held
 from driveline.models.manoeuvre import BLOCK, Input, State
@@ -115,7 +116,7 @@ def test_fmpy_reads_its_blocks_and_parameters(packaged, name, tmp_path) -> None:
             target.writestr(entry, content)
     ssd = read_ssd(copy)
     assert ssd.system is not None
-    assert {component.name for component in ssd.system.elements} == BOXES.keys()
+    assert {component.name for component in ssd.system.elements} == {SOURCE, *PLACES}
     assert all(component.parameterBindings[0].parameterValues[0].parameters for component in ssd.system.elements)
 
 
@@ -170,24 +171,34 @@ def test_start_end_and_grip_of_the_road_are_those_of_the_manoeuvre(packaged) -> 
     assert values(ssp, "resources/ValidationVehicle.ssv")["plant.mu"] == 0.12
 
 
+TWO_UNITS = Topology((DriveUnit("front"), DriveUnit("rear", (("T_mot", "T_mot_rear"), ("omega_1", "omega_1_rear")))))
+
+
 def test_in_the_picture_no_block_stands_on_another_and_lines_run_along_the_axes(packaged) -> None:
-    boxes = list(BOXES.values())
+    for topology in (ONE_UNIT, TWO_UNITS):
+        layout = Layout(list(topology.places), topology.connections)
+        require_apart(list(layout.boxes.values()))
+        for source, target, _ in topology.connections:
+            points = [layout.point(source), *layout.corners[source, target], layout.point(target)]
+            for (x1, y1), (x2, y2) in pairwise(points):
+                assert x1 == x2 or y1 == y2, (source, target)
+    system = parsed(packaged(), SSDS[0])
+    drawn = system.findall(".//ssd:ConnectionGeometry", NS)
+    assert len(drawn) == len(system.findall(".//ssd:Connection", NS)) > len(CONNECTIONS)
+
+
+def test_no_two_lines_of_the_picture_lie_on_each_other() -> None:
+    for topology in (ONE_UNIT, TWO_UNITS):
+        layout = Layout(list(topology.places), topology.connections)
+        upright = [points[k][0] for points in layout.corners.values() for k in range(0, len(points), 2)]
+        assert len({*upright}) == len(upright)
+
+
+def require_apart(boxes) -> None:
     for k, a in enumerate(boxes):
         assert a.x1 < a.x2
         assert a.y1 < a.y2
         assert all(a.x2 < b.x1 or b.x2 < a.x1 or a.y2 < b.y1 or b.y2 < a.y1 for b in boxes[k + 1 :])
-    for connection in parsed(packaged(), SSDS[0]).iterfind(".//ssd:Connection", NS):
-        start, end = ends(connection)
-        line = connection.find("ssd:ConnectionGeometry", NS)
-        between = [] if line is None else zip(*(map(float, line.get(f"points{a}").split()) for a in "XY"), strict=True)
-        points = [at(start), *between, at(end)]
-        for (x1, y1), (x2, y2) in pairwise(points):
-            assert x1 == pytest.approx(x2) or y1 == pytest.approx(y2), (start, end)
-
-
-def at(name: str) -> tuple[float, float]:
-    box, place = BOXES[name.partition(".")[0]], PLACES[name]
-    return box.x1 + place.x * (box.x2 - box.x1), box.y1 + place.y * (box.y2 - box.y1)
 
 
 def refused(fmus, folder: Path, capsys, *options: str) -> str:
@@ -298,5 +309,5 @@ def test_the_project_of_mastersim_names_what_is_in_the_package(packaged) -> None
             text = archive.read(name).decode("ascii")
             fmus = [line.split('"')[1] for line in text.splitlines() if line.startswith("simulator")]
             assert {f"../../{entry}" for entry in archive.namelist()} >= set(fmus)
-            assert len(fmus) == len(BOXES)
+            assert len(fmus) == len(PLACES) + 1
             assert f"parameter plant.v_0 {MANOEUVRES['tipin15'].v_0!r}\n" in text

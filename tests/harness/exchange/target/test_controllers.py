@@ -16,6 +16,7 @@ from driveline.harness.exchange.target.comparison import compare
 from driveline.harness.exchange.target.controllers import Programs, for_car, write_image
 from driveline.harness.exchange.target.costs import schedule
 from driveline.harness.exchange.target.offline_cases import Case
+from driveline.harness.loop.resolved import resolve
 from driveline.harness.loop.settings import Settings
 from driveline.models.controller import T_S
 from fmublocks.block.declaration import variables
@@ -51,7 +52,7 @@ def test_a_controller_is_compiled_with_its_start_values_but_for_what_was_set(nat
     monkeypatch.setattr(record, "target_sources", refused)
     settings = Settings(folder=native.parent, build="native", parameters={"controller.k_d": 2.5})
     with pytest.raises(CompilerError):
-        record.record(settings)
+        record.record(resolve(settings))
     parameters = FMUS["DampingController"].block.Parameters
     assert given == {v.name: v.start for v in variables(parameters)} | {"k_d": 2.5}
 

@@ -14,7 +14,7 @@ from driveline.harness.exchange.target.controllers import Programs, programs
 from driveline.harness.exchange.target.costs import Schedule, Size, size_of
 from driveline.harness.exchange.target.offline_cases import SAMPLES, Case, random_inputs, random_states, recorded
 from driveline.harness.exchange.target.record import NUMBERS, Record, numbers, signals, write
-from driveline.harness.loop.settings import Settings, loop
+from driveline.harness.loop.resolved import as_given
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.models.damping_controller import BLOCK
 
@@ -27,8 +27,8 @@ FEW = 600
 
 @pytest.fixture(scope="module")
 def launch_brake(both_built: Path) -> Case:
-    settings = Settings(plant=PLANT, folder=both_built, build="native")
-    return recorded(MANOEUVRES["launch_brake"], loop(settings), INPUTS, settings)
+    loop = as_given(PLANT, folder=both_built, build="native")
+    return recorded(MANOEUVRES["launch_brake"], loop, INPUTS)
 
 
 @pytest.fixture(scope="module")

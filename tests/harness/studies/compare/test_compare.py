@@ -9,7 +9,7 @@ from fmutesting.foreign import tampered
 
 import driveline
 from driveline.harness.loop.places import PLACES, PLANTS
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.resolved import as_given
 from driveline.harness.studies.compare import side_by_side
 from driveline.harness.studies.compare.compare import (
     Outcome,
@@ -79,7 +79,7 @@ def test_a_mapping_is_for_the_controllers_that_have_its_names(native, tmp_path, 
     theirs = tampered(native / f"{OURS}.fmu", tmp_path / "Mine.fmu", lambda xml: xml.replace('"T_ref"', '"out"'))
 
     def mappings(todo, loops):
-        return [loops[case.plant, case.controller].mapping for case in todo]
+        return [loops[case.plant, case.controller].settings.mapping for case in todo]
 
     monkeypatch.setattr(side_by_side, "run_many", lambda one, todo, label: mappings(todo, one.keywords["loops"]))
     tipin, given = driveline.MANOEUVRES["tipin15"], {"folder": native.parent}
@@ -102,7 +102,7 @@ def test_what_is_not_to_be_set_for_all_runs_is_refused_before_any_of_them(own):
 def compared(native, tmp_path_factory):
     """Folder with what a comparison of one step on both plants writes."""
     folder = tmp_path_factory.mktemp("compare")
-    loops = loops_of({(plant, OURS): Settings(plant=plant, folder=native.parent) for plant in PLANTS})
+    loops = loops_of({(plant, OURS): as_given(plant, folder=native.parent) for plant in PLANTS})
     asked: list[int] = []
     run_many = many_runs.run_many
     with pytest.MonkeyPatch.context() as patch:

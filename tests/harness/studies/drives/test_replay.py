@@ -16,7 +16,7 @@ from fmutesting.slow import slow
 import driveline
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import STEP_SIZE, T_S
-from driveline.harness.loop.settings import Settings, loop
+from driveline.harness.loop.resolved import as_given, resolve
 from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.manoeuvres.road_load import RoadLoad, Track
@@ -28,7 +28,6 @@ from driveline.harness.studies.drives import recorded_drive
 from driveline.harness.studies.drives.replay import CLOSE, followed, replay, signals_of, speed_error, write
 from driverecords.drive import read_drive
 from fmuloop.errors import WiringError
-from fmuloop.interface import Interface
 from fmuloop.system import Connection
 from tests import ROOT
 from toolground.errors import MissingExtra, UserError
@@ -51,12 +50,12 @@ def short_drive(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def settings(native):
-    return Settings(plant="ValidationVehicle", folder=native.parent, build="native")
+    return as_given("ValidationVehicle", folder=native.parent, build="native")
 
 
 @pytest.fixture(scope="module")
-def load(native):
-    return RoadLoad.of_plant(Interface(native / "ValidationVehicle.fmu"))
+def load(settings):
+    return RoadLoad.of(settings)
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +70,9 @@ def replayed(settings, load, short_drive, tmp_path_factory):
 
 
 def test_a_program_gets_the_same_rides(replayed, short_drive, settings):
-    rides = driveline.replay(driveline.read_drive(short_drive), held=0.5, folder=settings.folder, build=settings.build)
+    rides = driveline.replay(
+        driveline.read_drive(short_drive), held=0.5, folder=settings.settings.folder, build="native"
+    )
     assert [ride.controller for ride in rides] == ["without damping", "DampingController"]
     for ride, expected in zip(rides, replayed[0], strict=False):
         assert np.array_equal(ride.signals, expected.signals)
@@ -98,11 +99,11 @@ def test_what_a_bus_tells_reaches_a_controller_that_has_an_input_for_it(
     assert (t[active.argmax()], np.count_nonzero(active) * STEP_SIZE) == pytest.approx((1.0, 1.0))
     assert results["controller.alive"].tolist() == [first + k // 2 for k in range(len(t))]
     assert results["controller.status"].max() < 4
-    system, target = loop(settings), "controller.slip_control"
-    assert set(_offered(manoeuvre, system)) == {"controller.alive", target}
-    told_by_a_block = replace(system, connections=(*system.connections, Connection("can.valid", target)))
-    assert set(_offered(manoeuvre, told_by_a_block)) == {"controller.alive"}
-    assert _offered(replace(manoeuvre, offered={"other": NOTHING}), system) == {}
+    fitted, target = as_given(settings).fit, "controller.slip_control"
+    assert set(_offered(manoeuvre, fitted)) == {"controller.alive", target}
+    system = replace(fitted.system, connections=(*fitted.system.connections, Connection("can.valid", target)))
+    assert set(_offered(manoeuvre, fitted._replace(system=system))) == {"controller.alive"}
+    assert _offered(replace(manoeuvre, offered={"other": NOTHING}), fitted) == {}
 
 
 @pytest.mark.parametrize(
@@ -120,7 +121,11 @@ def test_what_a_program_cannot_replay_is_refused(short_drive, given, message):
 
 
 def test_a_controller_that_is_not_built_is_named_before_the_rides(short_drive, settings):
-    given = {"controllers": ["DampingController", "SpeedWashout"], "folder": settings.folder, "build": "native"}
+    given = {
+        "controllers": ["DampingController", "SpeedWashout"],
+        "folder": settings.settings.folder,
+        "build": "native",
+    }
     missing = r"there is no FMU .*SpeedWashout\.fmu; `driveline build SpeedWashout --build native --output "
     with pytest.raises(driveline.DrivelineError, match=missing) as refused:
         driveline.replay(driveline.read_drive(short_drive), **given)
@@ -128,15 +133,15 @@ def test_a_controller_that_is_not_built_is_named_before_the_rides(short_drive, s
 
 
 def test_a_mapping_is_for_the_controllers_that_have_its_names(short_drive, settings, tmp_path, monkeypatch):
-    ours = settings.folder / "native" / "DampingController.fmu"
+    ours = settings.settings.folder / "native" / "DampingController.fmu"
     theirs = tampered(ours, tmp_path / "Mine.fmu", lambda xml: xml.replace('"T_ref"', '"out"'))
-    given = {"controllers": ["DampingController", theirs], "folder": settings.folder, "build": "native"}
+    given = {"controllers": ["DampingController", theirs], "folder": settings.settings.folder, "build": "native"}
     found = {}
     monkeypatch.setattr(recorded_drive, "rides", lambda track, load, loops, held: found.update(loops))
     monkeypatch.setattr(recorded_drive, "followed_speed", lambda drive, rides: [])
     recording = driveline.read_drive(short_drive)
     driveline.replay(recording, mapping={"controller.T_ref": "out"}, **given)
-    assert [made.mapping for made in found.values()] == [{}, {"controller.T_ref": "out"}]
+    assert [loop.settings.mapping for loop in found.values()] == [{}, {"controller.T_ref": "out"}]
     with pytest.raises(driveline.DrivelineError, match=r"in Mine\.fmu nowhere does not exist"):
         driveline.replay(recording, mapping={"controller.T_ref": "nowhere"}, **given)
 
@@ -312,4 +317,4 @@ def test_without_the_counting_package_the_extra_is_named_before_the_run(short_dr
     monkeypatch.setitem(sys.modules, "rainflow", None)
     load = RoadLoad(i=9.0, r=0.29, m=1450.0, g=9.81, c_rr=0.012, c_wa=0.42)
     with pytest.raises(MissingExtra, match="extra `replay`"):
-        replay(Track.of(read_drive(short_drive)), load, {"DampingController": Settings()})
+        replay(Track.of(read_drive(short_drive)), load, {"DampingController": resolve()})

@@ -12,7 +12,7 @@ import driveline
 from docs.studies.plausible_drives import Judged, cases, judged
 from driveline.harness.commands.cli import main
 from driveline.harness.loop.places import PLANTS
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.resolved import as_given
 from driveline.harness.manoeuvres.catalogue import TOWN_DRIVE
 from driveline.harness.studies.drives.replay import CLOSE
 from driveline.harness.views.terminal import print_rides
@@ -98,12 +98,12 @@ def test_of_a_drive_that_is_true_a_look_finds_nothing_and_it_has_no_report(given
 def test_nothing_is_odd_in_drives_of_our_own_and_they_are_followed(native: Path) -> None:
     """All manoeuvres on both plants, with and without damping, with cars and sensors that are drawn at random;
     `docs.studies.plausible_drives` has all 200."""
-    settings = {plant: Settings(plant=plant, folder=native.parent, build="native") for plant in PLANTS}
-    found: list[Judged] = [judged(case, damped, settings[case.plant], follow=False) for case, damped in cases(FEW)]
+    loops = {plant: as_given(plant, folder=native.parent, build="native") for plant in PLANTS}
+    found: list[Judged] = [judged(case, damped, loops[case.plant], follow=False) for case, damped in cases(FEW)]
     assert [str(finding) for one in found for finding in one.findings] == []
     assert sum(one.balance.fits for one in found) > FEW / 2, "most are judged"
     assert sum(channel.named for one in found for channel in one.channels) == 0
-    for plant, made in settings.items():
+    for plant, made in loops.items():
         driven = [judged(case, damped, made) for case, damped in cases(26) if case.plant == plant][::3]
         assert [str(finding) for each in driven for finding in each.findings] == []
         assert np.max([each.speed_error for each in driven]) < 2.0 * CLOSE

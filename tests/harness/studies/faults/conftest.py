@@ -4,7 +4,7 @@ import pytest
 
 from driveline.fmus.catalogue import SIGNAL_FAULTS as FMU
 from driveline.harness.loop.places import PLANTS
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.resolved import as_given
 
 
 @pytest.fixture(scope="session")
@@ -14,6 +14,6 @@ def injector(native_builder, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def settings(native):
-    """Of the loop with each plant, on freshly built FMUs."""
-    return {plant: Settings(plant=plant, folder=native.parent, build="native") for plant in PLANTS}
+def loops(native):
+    """With each plant, of freshly built FMUs."""
+    return {plant: as_given(plant, folder=native.parent, build="native") for plant in PLANTS}

@@ -12,7 +12,7 @@ from fmutesting.foreign import tampered
 
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.loop.places import NO_DAMPING
-from driveline.harness.loop.settings import Settings, loop
+from driveline.harness.loop.resolved import as_given
 from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults import evidence, fault_catalogue
 from driveline.harness.studies.faults.fault_campaign import campaign, outcome, table
@@ -85,13 +85,13 @@ def test_faults_and_states_are_numbered_as_in_the_models():
 
 def test_plants_of_the_same_name_are_refused(tmp_path):
     with pytest.raises(UserError, match="two plants are called car"):
-        FaultRunner(tmp_path / "SignalFaults.fmu", {"mine/car.fmu": Settings(), "theirs/car.fmu": Settings()})
+        FaultRunner(tmp_path / "SignalFaults.fmu", {"mine/car.fmu": as_given(), "theirs/car.fmu": as_given()})
 
 
 @pytest.mark.parametrize("plant", PLANTS)
-def test_the_injector_without_a_fault_changes_nothing(injector, settings, plant):
+def test_the_injector_without_a_fault_changes_nothing(injector, loops, plant):
     manoeuvre = SITUATIONS["gap"].manoeuvre
-    plain = loop(settings[plant])
+    plain = loops[plant].system
     direct, through = (
         run(system, Experiment(1.3, inputs=signals(manoeuvre), parameters=start(manoeuvre)))
         for system in (plain, with_faults(plain, injector))
@@ -100,18 +100,18 @@ def test_the_injector_without_a_fault_changes_nothing(injector, settings, plant)
 
 
 def test_a_controller_that_tells_neither_status_nor_torque_is_judged_by_the_rest(
-    injector, settings, native_builder, tmp_path, caplog
+    injector, loops, native_builder, tmp_path, caplog
 ):
     warn_once.cache_clear()
-    native_builder(EVERY[NO_DAMPING], settings["TwoMassDriveline"].folder)
+    native_builder(EVERY[NO_DAMPING], loops["TwoMassDriveline"].settings.folder)
 
     def change(xml):
         for name in ("status", "T_damp", "enable"):
             xml = xml.replace(f'name="{name}"', f'name="my_{name}"')
         return xml
 
-    of_ours = settings["TwoMassDriveline"]
-    mine = tampered(of_ours.folder / "native" / "DampingController.fmu", tmp_path / "mine.fmu", change)
+    of_ours = loops["TwoMassDriveline"]
+    mine = tampered(of_ours.settings.folder / "native" / "DampingController.fmu", tmp_path / "mine.fmu", change)
     theirs, ours = (
         campaign(FaultRunner(injector, {"TwoMassDriveline": each}), [1, 3], 1, workers=1)
         for each in (of_ours.replace(controller=mine), of_ours)
@@ -137,9 +137,9 @@ def test_a_case_that_an_fmu_ends_is_not_clean(caplog):
     assert caplog.messages == [f"case {each}: plant (car.fmu) ended the run at 2 s"]
 
 
-def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, settings):
+def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, loops):
     fault = Fault("motor speed NaN", 1.0, 1.5, 1.0, 1.0)
-    runs = FaultRunner(injector, settings).runs(Case(1, "TwoMassDriveline", "coasting", (fault,), 1))
+    runs = FaultRunner(injector, loops).runs(Case(1, "TwoMassDriveline", "coasting", (fault,), 1))
     for run_ in (runs.healthy, runs.undamped):
         assert run_.nbytes < 24 * len(runs.faulty)
         assert run_.base is None
@@ -148,8 +148,8 @@ def test_runs_that_are_kept_hold_what_is_read_of_them_alone(injector, settings):
 @pytest.mark.parametrize(
     ("plant", "least", "most"), [("TwoMassDriveline", 0.25, 1.1), ("ValidationVehicle", 0.05, 1.5)]
 )
-def test_on_ice_the_wheels_lock_and_spin(injector, settings, plant, least, most):
-    runner = FaultRunner(injector, settings)
+def test_on_ice_the_wheels_lock_and_spin(injector, loops, plant, least, most):
+    runner = FaultRunner(injector, loops)
 
     def speed_of_the_wheels(kind, size):
         """Over that of rolling."""
@@ -162,9 +162,9 @@ def test_on_ice_the_wheels_lock_and_spin(injector, settings, plant, least, most)
 
 
 @pytest.mark.parametrize("T_max", [100.0, 1300.0])
-def test_a_car_with_another_motor_is_asked_for_its_share(injector, settings, T_max):
+def test_a_car_with_another_motor_is_asked_for_its_share(injector, loops, T_max):
     """In all three runs, and when the wheels are made to spin."""
-    made = settings["TwoMassDriveline"].with_parameters({f"{block}.T_max": T_max for block in ("motor", "controller")})
+    made = loops["TwoMassDriveline"].with_parameters({f"{block}.T_max": T_max for block in ("motor", "controller")})
     runner = FaultRunner(injector, {"TwoMassDriveline": made})
     fault = Fault(SPIN, 1.5, 1.7, 80.0, 1.0)
     demand = runner.runs(Case(1, "TwoMassDriveline", "gap", (fault,), 1)).undamped["controller.T_driver"]
@@ -173,17 +173,17 @@ def test_a_car_with_another_motor_is_asked_for_its_share(injector, settings, T_m
 
 
 @pytest.mark.parametrize("plant", PLANTS)
-def test_on_a_hill_of_ice_the_wheels_spin_without_a_fault(injector, settings, plant):
+def test_on_a_hill_of_ice_the_wheels_spin_without_a_fault(injector, loops, plant):
     """While the driver pushes; the design model has slip in the place of a limit of friction."""
     fault = Fault(NOTHING.name, 2.0, 3.0, 1.0, 1.0)
-    found = FaultRunner(injector, settings).runs(Case(1, plant, "ice_hill", (fault,), 1)).faulty
+    found = FaultRunner(injector, loops).runs(Case(1, plant, "ice_hill", (fault,), 1)).faulty
     assert found["time"][-1] == SITUATIONS["ice_hill"].duration
     assert (found["plant.omega_2"] / 9.0 * 0.29 - found["plant.v"]).max() > 0.4
 
 
-def test_an_fmu_that_was_changed_since_is_refused(injector, settings, tmp_path):
+def test_an_fmu_that_was_changed_since_is_refused(injector, loops, tmp_path):
     mine = shutil.copy(injector, tmp_path / "SignalFaults.fmu")
-    runner = FaultRunner(mine, settings)
-    mine.write_bytes((settings["TwoMassDriveline"].folder / "native" / "WheelSpeedCan.fmu").read_bytes())
+    runner = FaultRunner(mine, loops)
+    mine.write_bytes((loops["TwoMassDriveline"].settings.folder / "native" / "WheelSpeedCan.fmu").read_bytes())
     with pytest.raises(UserError, match=r"SignalFaults\.fmu is not the one that the campaign was begun with"):
         campaign(runner, [1], 3, workers=1)

@@ -27,8 +27,8 @@ PLANTS = ("TwoMassDriveline", "ValidationVehicle")
 
 
 @pytest.fixture(scope="module")
-def outcomes(injector, settings):
-    return campaign(fault_injection.FaultRunner(injector, settings), range(1, 7), 1, workers=1)
+def outcomes(injector, loops):
+    return campaign(fault_injection.FaultRunner(injector, loops), range(1, 7), 1, workers=1)
 
 
 def test_every_case_and_what_was_measured_is_in_the_csv_file(outcomes, tmp_path):
@@ -133,10 +133,10 @@ def test_the_figure_of_a_case_names_its_campaign(options, caption):
 
 
 @pytest.mark.slow
-def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, settings, tmp_path, monkeypatch):
+def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, loops, tmp_path, monkeypatch):
     runs = []
     monkeypatch.setattr(fault_injection, "run", lambda *given: runs.append(1) or run(*given))
-    again, files = write_case(2, 1, fault_injection.FaultRunner(injector, settings), tmp_path)
+    again, files = write_case(2, 1, fault_injection.FaultRunner(injector, loops), tmp_path)
     assert len(runs) == 3
     assert again == outcomes[1]
     assert [file.name for file in files] == ["case_2.csv", "case_2.png"]

@@ -21,7 +21,8 @@ def test_car_controller_and_settings_reach_every_plant_but_no_single_one(monkeyp
     asked = []
     monkeypatch.setattr(whole_loop, "analysis", asked.append)
     driveline.analyse(["ValidationVehicle"], "SpeedWashout", {"m": 1900.0, "k_v": 2.0}, folder="here")
-    ((plant, given),) = asked[0].items()
+    ((plant, loop),) = asked[0].items()
+    given = loop.settings
     assert plant == given.plant == "ValidationVehicle"
     assert (given.folder, given.controller) == (Path("here"), "SpeedWashout")
     assert given.parameters.items() >= {"plant.m": 1900.0, "controller.k_v": 2.0}.items()

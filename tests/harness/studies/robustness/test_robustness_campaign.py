@@ -10,7 +10,7 @@ import pytest
 from driveline.fmus.catalogue import EVERY
 from driveline.harness.design.uncertainty_box import BOX, DOUBLINGS, LOSS, Deviation, changed, deviating
 from driveline.harness.loop.places import PLACES
-from driveline.harness.loop.settings import Settings
+from driveline.harness.loop.resolved import as_given
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.simulation.case_archive import CaseArchive
@@ -100,8 +100,8 @@ def controllers(native_builder, native, tmp_path_factory):
 
 
 def runner(folder, plant="ValidationVehicle", controller="DampingController", parameters=()):
-    settings = Settings(plant=plant, controller=controller, parameters=dict(parameters), folder=folder, build="native")
-    return CaseRunner({(plant, controller): settings}, seed=1)
+    loop = as_given(plant, controller=controller, parameters=dict(parameters), folder=folder, build="native")
+    return CaseRunner({(plant, controller): loop}, seed=1)
 
 
 @pytest.mark.parametrize("plant", PLACES["plant"])

@@ -32,13 +32,16 @@ def check_names(all_variables: Iterable[Variable]) -> None:
     Raises:
         ValueError: two variables have one name, or names that differ in case only, which not every tool tells apart.
     """
-    known: dict[str, str] = {}
+    alike: dict[str, list[str]] = {}
     for variable in all_variables:
-        name = variable.name.casefold()
-        if name in known:
-            how = "differ in case only" if known[name] != variable.name else "have one name"
-            raise ValueError(f"the variables {known[name]} and {variable.name} {how}")
-        known[name] = variable.name
+        alike.setdefault(variable.name.casefold(), []).append(variable.name)
+    problems = [
+        f"the variables {' and '.join(names)} {'differ in case only' if len({*names}) > 1 else 'have one name'}"
+        for names in alike.values()
+        if len(names) > 1
+    ]
+    if problems:
+        raise ValueError("; ".join(problems))
 
 
 def text(value: Any) -> str:
