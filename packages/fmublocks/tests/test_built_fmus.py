@@ -36,7 +36,7 @@ def run_of(path: Path, kind: str, stop_time: float, signals: Any = None) -> np.n
 def test_each_build_of_a_pi_controller_gives_the_numbers_of_its_equations(folder: Path) -> None:
     names = [("time", float), ("r", float), ("y", float)]
     signals = np.array([(0.01 * k, 1.0, 0.9 * (k > 40)) for k in range(102)], dtype=names)
-    block = fmu_in(FOLDER / "pi_controller.py").block
+    block: Any = fmu_in(FOLDER / "pi_controller.py").block
     p, x, expected = block.Parameters(), block.start(block.Input(), block.Parameters()), []
     for _, r, y in signals[:101].tolist():
         expected.append(block.output(x, block.Input(r, y), p).u)
