@@ -22,7 +22,7 @@ from ..manoeuvres.manoeuvre import Manoeuvre
 from ..views.figure_options import FigureOptions
 from .arguments import option
 from .manoeuvres import Chosen, Listing, manoeuvre
-from .options import Figures, expert, output, record, seconds
+from .options import DriveUnits, Figures, expert, output, record, seconds
 from .printing import JsonPrinting
 from .settings import caption
 from .settings import resolved as resolved_of
@@ -30,7 +30,7 @@ from .signals_run import OneRun, signals_job, write_frames
 
 
 @record
-class Arguments(Listing, OneRun, Figures, JsonPrinting):
+class Arguments(Listing, OneRun, DriveUnits, Figures, JsonPrinting):
     manoeuvre: Chosen = manoeuvre("one of --list, or a file (default: %(default)s)", "tipin15")
     output: Path = output("results/simulate", "the signals and the figure")
     plot: bool = option(False, "draw speeds, torques and the motion of the body")
