@@ -27,7 +27,7 @@ from ..metrics.run_metrics import Metrics
 from ..views.metrics_table import legend
 from .jobs import distinguishing, job
 from .manoeuvres import Chosen, Listing, chosen, manoeuvre
-from .options import Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plants
+from .options import DriveUnits, Figures, Loop, Replacing, Report, SignalsFormat, controllers, output, plants
 from .settings import all_loops, caption, dampings, say_unknowns
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ TABLES = ("table.md", "metrics.csv")
 
 
 @record
-class Arguments(Listing, Loop, Replacing, SignalsFormat, Figures, Report, JsonPrinting):
+class Arguments(Listing, Loop, DriveUnits, Replacing, SignalsFormat, Figures, Report, JsonPrinting):
     manoeuvre: Chosen = manoeuvre("only this one of --list, or that of a file (repeatable; default: ten)")
     plant: tuple[str, ...] = plants()
     controller: tuple[str, ...] = controllers(PLACES["controller"][0])

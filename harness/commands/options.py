@@ -202,6 +202,12 @@ class Loop(ParameterFiles, FmuFolder, ForeignLimits):
         metavar="FILE.toml|NAME=THEIRS",
     )
     build: str | None = expert(None, BUILD_HELP, choices=BUILDS)
+
+
+@record
+class DriveUnits:
+    """Of a command that runs loops of several drive units too."""
+
     topology: Path | None = expert(
         None, "the drive units of the loop, if it has several (default: one)", file, metavar="FILE.toml"
     )
@@ -313,7 +319,7 @@ def case(most: int, help: str) -> Any:
 
 
 @record
-class Campaign(Loop, Replacing, Report):
+class Campaign(Loop, DriveUnits, Replacing, Report):
     """Of a command that runs many cases, or one of them again."""
 
     plant: tuple[str, ...] = plants()

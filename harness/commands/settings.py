@@ -51,7 +51,7 @@ def _given(args: Loop, plant: str, controller: str, mapping: Mapping[str, str], 
         build=args.build,
         mapping=mapping,
         limits=args.limits,
-        topology=args.topology or ONE_UNIT,  # type: ignore[arg-type]  # a file becomes one there
+        topology=getattr(args, "topology", None) or ONE_UNIT,
         **run,
     )
 

@@ -24,14 +24,14 @@ from ..loop.places import STEP_SIZE
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..views.figure_options import FigureOptions
 from .manoeuvres import Chosen, Listing, manoeuvre
-from .options import Figures, output
+from .options import DriveUnits, Figures, output
 from .settings import caption
 from .settings import resolved as resolved_of
 from .signals_run import OneRun, signals_job, write_frames
 
 
 @record
-class Arguments(Listing, OneRun, Figures, JsonPrinting):
+class Arguments(Listing, OneRun, DriveUnits, Figures, JsonPrinting):
     manoeuvre: Chosen = manoeuvre("one of --list, or a file (default: %(default)s)", "tipin15")
     output: Path = output("results/simulate", "the signals and the figure")
     plot: bool = option(False, "draw speeds, torques and the motion of the body")

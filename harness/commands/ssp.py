@@ -24,7 +24,7 @@ from ..loop.settings import Settings
 from ..manoeuvres.manoeuvre import Manoeuvre
 from .jobs import distinguishing, job
 from .manoeuvres import Chosen, Listing, manoeuvre
-from .options import Loop, Replacing, controller, output, plants
+from .options import DriveUnits, Loop, Replacing, controller, output, plants
 from .settings import plants_loops
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 @record
-class Arguments(Listing, Loop, Replacing, Printing):
+class Arguments(Listing, Loop, DriveUnits, Replacing, Printing):
     manoeuvre: Chosen = manoeuvre("one of --list, or a file (default: %(default)s)", "tipin15")
     plant: tuple[str, ...] = plants()
     controller: str = controller()
