@@ -73,7 +73,7 @@ def run(args: Arguments) -> int:
         if args.frames:
             made.wrote(*write_frames(resolved, results, stem, args.frames))
         if args.plot:
-            from ..loop.topology import of_unit
+            from ..loop.unit_runs import of_unit
             from ..views.run_figure import plot_run
 
             for unit in given.topology.units:

@@ -9,19 +9,17 @@
     omega_1 = "omega_1_rear"
 
 The blocks of the units are called controller_front, motor_front, can_front, ...; what no unit has of its own, as the
-brake or the speed of the body, all have in common. A run is read as one of its units sees it, see `of_unit`.
+brake or the speed of the body, all have in common. A run is read as one of its units sees it, see
+`harness.loop.unit_runs`.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
-
-import numpy as np
+from typing import NamedTuple
 
 from fmuloop.errors import WiringError
-from fmuloop.results import Results
 from fmuloop.system import Connection, Port
 from toolground.plain_text import plain
 from toolground.toml_file import toml_entries
@@ -116,34 +114,6 @@ class Topology:
 
 
 ONE_UNIT = Topology()
-
-
-def of_unit(results: Results, unit: DriveUnit) -> Results:
-    """A run with the signals of a drive unit under the names of their roles, without the blocks of the others."""
-    if unit == DriveUnit():
-        return results
-    fields: Any = results.dtype.fields or {}
-    renamed = {f"{BODY}.{role}": f"{BODY}.{own}" for role, own in unit.of_plant if f"{BODY}.{own}" in fields}
-    others = (name for name in fields if name not in renamed.values())
-    columns = {"time": "time"} | {role: own for role in _roles(others, unit) if (own := unit.own(role)) in fields}
-    columns |= renamed
-    layout: Any = {
-        "names": list(columns),
-        "formats": [fields[own][0] for own in columns.values()],
-        "offsets": [fields[own][1] for own in columns.values()],
-        "itemsize": results.dtype.itemsize,
-    }
-    seen: Any = results.view(np.dtype(layout))
-    seen.units = {role: results.units[own] for role, own in columns.items() if own in results.units}
-    return seen
-
-
-def _roles(columns: Iterable[str], unit: DriveUnit) -> Iterator[str]:
-    """What columns of these instances are called in a loop of one drive unit, but for the unit's own of the plant."""
-    for name in columns:
-        place = name.partition(".")[0].removesuffix(f"_{unit.name}")
-        if name.startswith(f"{unit.instance(place)}."):
-            yield f"{place}.{name.partition('.')[2]}"
 
 
 def read_topology(path: Path) -> Topology:

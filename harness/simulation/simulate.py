@@ -26,7 +26,8 @@ from ..loop.parameter_words import said
 from ..loop.places import T_S, NameOrFile
 from ..loop.resolved import ResolvedLoop, as_given
 from ..loop.settings import Changes, Settings
-from ..loop.topology import ONE_UNIT, Topology, of_unit
+from ..loop.topology import ONE_UNIT, Topology
+from ..loop.unit_runs import of_unit
 from ..manoeuvres.catalogue import MANOEUVRES
 from ..manoeuvres.manoeuvre import Manoeuvre
 from ..manoeuvres.signals import Signal

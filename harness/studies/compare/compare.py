@@ -14,7 +14,8 @@ from toolground.errors import UserError
 
 from ...loop.places import by_name
 from ...loop.resolved import ResolvedLoop
-from ...loop.topology import DriveUnit, Topology, of_unit
+from ...loop.topology import DriveUnit, Topology
+from ...loop.unit_runs import of_unit
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import at_samples, evaluate

@@ -14,7 +14,7 @@ from ...loop.mapped_names import mappings
 from ...loop.places import PLACES, PLANTS, NameOrFile
 from ...loop.resolved import resolve
 from ...loop.settings import RunChanges, Settings
-from ...loop.topology import of_unit
+from ...loop.unit_runs import of_unit
 from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate

@@ -19,7 +19,8 @@ from ...loop import roles
 from ...loop.built_fmus import warn_of_stale
 from ...loop.places import by_name
 from ...loop.resolved import ResolvedLoop
-from ...loop.topology import ONE_UNIT, DriveUnit, Topology, of_unit
+from ...loop.topology import ONE_UNIT, DriveUnit, Topology
+from ...loop.unit_runs import of_unit
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...manoeuvres.parts import Sum

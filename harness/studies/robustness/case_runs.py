@@ -15,7 +15,8 @@ from toolground.plain_text import plain
 from ...design.uncertainty_box import changed
 from ...loop import roles
 from ...loop.resolved import ResolvedLoop
-from ...loop.topology import DriveUnit, of_unit
+from ...loop.topology import DriveUnit
+from ...loop.unit_runs import of_unit
 from ...manoeuvres.catalogue import MANOEUVRES
 from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre

@@ -10,7 +10,8 @@ from driveline.harness.loop import roles
 from driveline.harness.loop.places import CONNECTIONS, INPUTS, OUTPUTS, PARAMETERS
 from driveline.harness.loop.resolved import ResolvedLoop, resolve
 from driveline.harness.loop.settings import Settings
-from driveline.harness.loop.topology import ONE_UNIT, DriveUnit, Topology, of_unit, read_topology
+from driveline.harness.loop.topology import ONE_UNIT, DriveUnit, Topology, read_topology
+from driveline.harness.loop.unit_runs import of_unit
 from driveline.harness.studies.compare.compare import Case, outcomes_of
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.outcome import Case as Draw
