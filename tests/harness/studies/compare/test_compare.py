@@ -79,7 +79,7 @@ def test_a_mapping_is_for_the_controllers_that_have_its_names(native, tmp_path, 
     theirs = tampered(native / f"{OURS}.fmu", tmp_path / "Mine.fmu", lambda xml: xml.replace('"T_ref"', '"out"'))
 
     def mappings(todo, loops):
-        return [loops[case.plant, case.controller].settings.mapping for case in todo]
+        return [{case: loops[case.plant, case.controller].settings.mapping} for case in todo]
 
     monkeypatch.setattr(side_by_side, "run_many", lambda *a, runs, **_: mappings(a[1], runs.keywords["loops"]))
     tipin, given = driveline.MANOEUVRES["tipin15"], {"folder": native.parent}
