@@ -7,6 +7,7 @@ start of the processes, over the steps of as many single runs.
 
 import argparse
 import resource
+from collections.abc import Sequence
 from contextlib import nullcontext
 from functools import partial
 from statistics import median
@@ -17,11 +18,13 @@ from driveline.harness.loop.places import PLANTS
 from driveline.harness.loop.settings import loop
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
-from driveline.harness.simulation.simulate import signals, simulate, start
+from driveline.harness.simulation.simulate import planned, signals, start
 from fmuloop import many_runs
+from fmuloop.campaign import RunRequest
 from fmuloop.compiled_steps import LIBRARY, CompiledSteps
 from fmuloop.experiment import Experiment
 from fmuloop.loading import loaded
+from fmuloop.results import Results
 from fmuloop.steps import interpreted
 from toolground.interruption import script
 
@@ -47,9 +50,14 @@ def further_runs(plant: str, count: int) -> tuple[float, float]:
     return median(whole[1:]), median(alone[1:])
 
 
-def tip_in(plant: str, seed: int) -> None:
-    """A run that is evaluated."""
-    evaluate(simulate(TIPIN, plant, seed=seed), TIPIN)
+def needed(plant: str, seed: int) -> list[RunRequest]:
+    """A run."""
+    return [planned(TIPIN, plant, seed=seed)]
+
+
+def tip_in(_seed: int, runs: Sequence[Results]) -> None:
+    """It is evaluated."""
+    evaluate(runs[0], TIPIN)
 
 
 def many(plant: str, runs: int, in_lanes: bool = True) -> tuple[float, float]:
@@ -58,7 +66,7 @@ def many(plant: str, runs: int, in_lanes: bool = True) -> tuple[float, float]:
 
     began, before = perf_counter(), _processor_time()
     with nullcontext() if in_lanes else patch.object(many_runs, "lanes_here", lambda: 0):
-        many_runs.run_many(partial(tip_in, plant), range(1, runs + 1))
+        many_runs.run_many(tip_in, range(1, runs + 1), runs=partial(needed, plant))
     return perf_counter() - began, _processor_time() - before
 
 

@@ -1,5 +1,6 @@
 # Run: one run of the closed loop, or many
 from .harness.simulation.simulate import simulate as simulate
+from .harness.simulation.simulate import planned as planned
 from .harness.loop.settings import Settings as Settings
 from .harness.metrics.evaluate import evaluate as evaluate
 from fmuloop.many_runs import run_many as run_many

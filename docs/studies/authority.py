@@ -4,7 +4,7 @@ Steps of the demand are scaled with T_max. The estimator is told the true car in
 three seeds.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
 from math import pi
 from typing import NamedTuple
@@ -18,8 +18,10 @@ from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import KMH, step
 from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.evaluate import evaluate
-from driveline.harness.simulation.simulate import simulate
+from driveline.harness.simulation.simulate import planned
+from fmuloop.campaign import RunRequest
 from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 
 from .study import Cell, Column, Measured, Study, Table
 
@@ -102,12 +104,21 @@ def manoeuvre(name: str, T_max: float) -> Manoeuvre:
     return step(name, name, v_0, scale * before, scale * after, rise)
 
 
-def measured(trial: Trial) -> tuple[float, float]:
-    """Settling time in ms and overshoot in %, each the mean over the seeds."""
+def course(trial: Trial) -> Manoeuvre:
+    return manoeuvre(trial.step, CARS[trial.car].entries()["T_max"])
+
+
+def needed(trial: Trial) -> list[RunRequest]:
+    """One with the noise of each seed."""
     car = CARS[trial.car].entries()
     gains: Mapping[str, float] = design(car) if trial.own else {}
-    course, parameters = manoeuvre(trial.step, car["T_max"]), loop_parameters({**car, **gains}, trial.plant)
-    metrics = [evaluate(simulate(course, trial.plant, parameters=parameters, seed=seed), course) for seed in SEEDS]
+    parameters = loop_parameters({**car, **gains}, trial.plant)
+    return [planned(course(trial), trial.plant, parameters=parameters, seed=seed) for seed in SEEDS]
+
+
+def measured(trial: Trial, results: Sequence[Results]) -> tuple[float, float]:
+    """Settling time in ms and overshoot in %, each the mean over the seeds."""
+    metrics = [evaluate(run, course(trial)) for run in results]
     settling, overshoot = np.mean([(1e3 * of.settling_time, 1e2 * of.overshoot) for of in metrics], axis=0)
     return float(settling), float(overshoot)
 
@@ -126,7 +137,7 @@ def tables(cars: Iterable[str], plants: Iterable[str] = PLANTS) -> dict[str, Tab
     named, driven = list(cars), list(plants)
     gains = {car: design(CARS[car].entries()) for car in named}
     trials = [Trial(*combination) for combination in product(named, driven, STEPS, (False, True))]
-    measures = dict(zip(trials, run_many(measured, trials, label="cars"), strict=True))
+    measures = dict(zip(trials, run_many(measured, trials, label="cars", runs=needed), strict=True))
     rows: dict[str, tuple[Cell, ...]] = {}
     for default in trials[::2]:
         pair = [measures[default], measures[default._replace(own=True)]]

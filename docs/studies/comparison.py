@@ -10,9 +10,11 @@ from driveline.harness.loop.places import COMPARATORS, PLACES, PLANTS
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.simulate import simulate
+from driveline.harness.simulation.simulate import planned
 from driveline.harness.studies.robustness.outcome import SHOWN
+from fmuloop.campaign import RunRequest
 from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 
 from .design_trials import mean
 from .study import Cell, Column, Measured, Study, Table, cell, number
@@ -49,13 +51,16 @@ Found = Mapping[Key, Metrics]
 def all_found(manoeuvres: Collection[str], seeds: Sequence[int] = HELD_OUT_SEEDS) -> dict[Key, Metrics]:
     """The means of all controllers on both plants."""
 
-    def measured(run: tuple[Key, int]) -> Metrics:
+    def needed(run: tuple[Key, int]) -> list[RunRequest]:
         (plant, name, controller), seed = run
-        return evaluate(simulate(MANOEUVRES[name], plant, controller=controller, seed=seed), MANOEUVRES[name])
+        return [planned(MANOEUVRES[name], plant, controller=controller, seed=seed)]
+
+    def measured(run: tuple[Key, int], results: Sequence[Results]) -> Metrics:
+        return evaluate(results[0], MANOEUVRES[run[0].manoeuvre])
 
     keys = [Key(*combination) for combination in product(PLANTS, manoeuvres, CONTROLLERS)]
     runs = list(product(keys, seeds))
-    metrics = dict(zip(runs, run_many(measured, runs, label="controllers"), strict=True))
+    metrics = dict(zip(runs, run_many(measured, runs, label="controllers", runs=needed), strict=True))
     return {key: mean([metrics[key, seed] for seed in seeds]) for key in keys}
 
 

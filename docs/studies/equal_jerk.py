@@ -3,6 +3,7 @@
 The demand of a tip-in is stretched until the jerk is that which ours has in a jump; then the response is compared.
 """
 
+from collections.abc import Sequence
 from itertools import product
 from math import nan
 
@@ -11,9 +12,12 @@ import numpy as np
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
 from driveline.harness.loop.places import PLANTS
 from driveline.harness.manoeuvres.catalogue import KMH, step
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.evaluate import evaluate
-from driveline.harness.simulation.simulate import simulate
+from driveline.harness.simulation.simulate import planned
+from fmuloop.campaign import RunRequest
 from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 
 from .comparison import CONTROLLERS
 from .study import Cell, Column, Measured, Study, Table, cell
@@ -25,11 +29,18 @@ Trial = tuple[str, str, float]
 """Plant and controller by name, and the rise."""
 
 
-def measured(trial: Trial) -> tuple[float, float]:
+def course(trial: Trial) -> Manoeuvre:
+    return step("tip-in", "", 15 * KMH, -12.0, 100.0, trial[2])
+
+
+def needed(trial: Trial) -> list[RunRequest]:
+    plant, controller, _ = trial
+    return [planned(course(trial), plant, controller=controller, seed=HELD_OUT_SEEDS[0])]
+
+
+def measured(trial: Trial, results: Sequence[Results]) -> tuple[float, float]:
     """Rms of the jerk up to 50 Hz, m/s3, and time to 90 % in s."""
-    plant, controller, rise = trial
-    course = step("tip-in", "", 15 * KMH, -12.0, 100.0, rise)
-    metrics = evaluate(simulate(course, plant, controller=controller, seed=HELD_OUT_SEEDS[0]), course)
+    metrics = evaluate(results[0], course(trial))
     return metrics.jerk_rms_to_50_Hz, metrics.response_delay
 
 
@@ -47,7 +58,8 @@ def at_jerk(most: float, jerk: np.ndarray, delay: np.ndarray) -> tuple[float, fl
 
 def table(controllers: tuple[str, ...]) -> Table:
     trials = list(product(PLANTS, controllers, RISES))
-    answers = np.reshape(run_many(measured, trials, label="equal jerk"), (len(PLANTS), len(controllers), len(RISES), 2))
+    pairs = run_many(measured, trials, label="equal jerk", runs=needed)
+    answers = np.reshape(pairs, (len(PLANTS), len(controllers), len(RISES), 2))
     rows: dict[str, tuple[Cell, ...]] = {}
     for plant, of_plant in zip(PLANTS, answers, strict=True):
         pairs = [at_jerk(of_plant[0, 0, 0], *of_controller.T) for of_controller in of_plant]

@@ -24,12 +24,14 @@ from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.simulate import simulate
+from driveline.harness.simulation.simulate import planned
 from driveline.harness.studies.robustness import summary
 from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.robustness_campaign import campaign
 from driveline.models.controller.gains import GAINS
+from fmuloop.campaign import RunRequest
 from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 from fmuloop.system import Scheme
 
 from .study import Cell, Column, Measured, Study, Table
@@ -123,12 +125,16 @@ def runs(goals: tuple[Goal, ...] = GOALS, seeds: tuple[int, ...] = HELD_OUT_SEED
     return [Run(*key, seed) for key in dict.fromkeys(keys) for seed in seeds]
 
 
-def measured(run: Run, parameters: Mapping[str, Any], settings: Settings | None = None) -> Metrics:
-    """The metrics of a run with these parameters of the controller, else with the settings."""
+def request(run: Run, parameters: Mapping[str, Any], settings: Settings | None = None) -> RunRequest:
+    """A run with these parameters of the controller, else with the settings."""
     manoeuvre = MANOEUVRES[run.manoeuvre]
     of_loop = deviating(parameters, run.plant, PLACES["controller"][0], run.deviation)
-    results = simulate(manoeuvre, settings, plant=run.plant, control=run.control, parameters=of_loop, seed=run.seed)
-    return evaluate(results, manoeuvre)
+    return planned(manoeuvre, settings, plant=run.plant, control=run.control, parameters=of_loop, seed=run.seed)
+
+
+def measured(run: Run, results: Results) -> Metrics:
+    """The metrics of a run."""
+    return evaluate(results, MANOEUVRES[run.manoeuvre])
 
 
 def all_measured(
@@ -136,7 +142,12 @@ def all_measured(
 ) -> dict[Run, Metrics]:
     """The metrics of all runs with these parameters of the controller, else with the settings, made on all cores."""
     todo = runs(goals)
-    metrics = run_many(lambda run: measured(run, parameters, settings), todo, label="goals")
+    metrics = run_many(
+        lambda run, results: measured(run, results[0]),
+        todo,
+        label="goals",
+        runs=lambda run: [request(run, parameters, settings)],
+    )
     return dict(zip(todo, metrics, strict=True))
 
 

@@ -7,7 +7,9 @@ from driveline.harness.design.search.search_space import space
 from driveline.harness.design.search.tuning_runs import HELD_OUT_SEEDS
 from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.metrics.run_metrics import Metrics
+from fmuloop.campaign import RunRequest
 from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 
 from .goals import (
     GOALS,
@@ -19,6 +21,7 @@ from .goals import (
     measured,
     missed,
     most,
+    request,
     runs,
     title,
 )
@@ -67,11 +70,15 @@ def all_changed(
     """
     without = {run: metrics for run, metrics in metrics_of.items() if not run.control}
 
-    def changed(change: Change) -> Reached:
-        changed_runs = {run: measured(run, {change.parameter: change.value}) for run in runs(goals) if run.control}
-        return all_reached({**without, **changed_runs}, goals)
+    damped = [run for run in runs(goals) if run.control]
 
-    return dict(zip(todo, run_many(changed, todo, label="changes"), strict=True))
+    def needed(change: Change) -> list[RunRequest]:
+        return [request(run, {change.parameter: change.value}) for run in damped]
+
+    def changed(_: Change, results: Sequence[Results]) -> Reached:
+        return all_reached({**without, **dict(zip(damped, map(measured, damped, results), strict=True))}, goals)
+
+    return dict(zip(todo, run_many(changed, todo, label="changes", runs=needed), strict=True))
 
 
 def closest(key: tuple[Goal, str], values: Reached, changed: Mapping[Change, Reached]) -> Closest:

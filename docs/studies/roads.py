@@ -30,9 +30,10 @@ from driveline.harness.simulation.simulate import signals, start
 from driveline.harness.studies.faults.fault_injection import with_faults
 from driveline.models.controller.supervision import FALLBACK
 from driveline.models.signal_faults import FRAME, LATE, MOTOR_SPEED, MOTOR_TORQUE
+from fmuloop.campaign import RunRequest
 from fmuloop.experiment import Experiment, Source
 from fmuloop.many_runs import run_many
-from fmuloop.runs import run
+from fmuloop.results import Results
 
 from . import periodic_errors
 from .study import Cell, Column, Measured, Study, Table
@@ -195,21 +196,29 @@ INJECTORS = {False: SIGNAL_FAULTS, True: periodic_errors.FMU}
 """What makes the errors of the frame: by whether they are periodic."""
 
 
-def gear_torque(case: Run, settings: Settings, injectors: Mapping[bool, Path]) -> tuple[np.ndarray, float]:
-    """In N.m at the samples that count, and the time in fallback in s."""
+def request(case: Run, settings: Settings, injectors: Mapping[bool, Path]) -> RunRequest:
     system = with_faults(loop(settings), injectors["frequency" in case.errors])
     parameters = start(case.manoeuvre, case.seed) | dict(settings.parameters)
     parameters |= {f"plant.{name}": value for name, value in case.plant.items()}
     parameters |= {f"faults.{name}": value for name, value in case.errors.items()}
     inputs = {**signals(case.manoeuvre, settings.control, settings.step_size), **case.told}
-    rows = at_samples(run(system, Experiment(case.manoeuvre.duration, inputs=inputs, parameters=parameters)))
+    return RunRequest(system, Experiment(case.manoeuvre.duration, inputs=inputs, parameters=parameters))
+
+
+def gear_torque(case: Run, results: Results) -> tuple[np.ndarray, float]:
+    """In N.m at the samples that count, and the time in fallback in s."""
+    rows = at_samples(results)
     fallback = T_S * float(np.count_nonzero(rows["controller.status"] == FALLBACK))
     return rows["plant.T_gear"][rows["time"] >= case.seen_from], fallback
 
 
-def ratios(case: Run, settings: Settings, injectors: Mapping[bool, Path]) -> Ratios:
-    off, _ = gear_torque(case, settings.replace(control=False), injectors)
-    on, fallback = gear_torque(case, settings, injectors)
+def needed(case: Run, settings: Settings, injectors: Mapping[bool, Path]) -> list[RunRequest]:
+    """Without damping and with it."""
+    return [request(case, its, injectors) for its in (settings.replace(control=False), settings)]
+
+
+def ratios(case: Run, results: Sequence[Results]) -> Ratios:
+    (off, _), (on, fallback) = (gear_torque(case, run) for run in results)
     return Ratios(
         peak=float(np.abs(on).max() / max(np.abs(off).max(), QUIET_PEAK)),
         rms=band_rms(on, T_S) / max(band_rms(off, T_S), QUIET_RMS),
@@ -228,7 +237,7 @@ def measured(
     """The ratios of all runs with a controller, in their order, with the FMUs in `folder` and these parameters."""
     injectors = {key: made_if_missing(fmu, folder, NATIVE).absolute() for key, fmu in INJECTORS.items()}
     settings = built(PLANT, controller=controller, folder=folder, build=NATIVE, parameters=parameters)
-    return run_many(partial(ratios, settings=settings, injectors=injectors), runs, workers, label)
+    return run_many(ratios, runs, workers, label, runs=partial(needed, settings=settings, injectors=injectors))
 
 
 NUMBERS = (Column("peak, worst"), Column("peak, mean"), Column("rms, worst"), Column("rms, mean"))

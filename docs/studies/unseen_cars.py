@@ -5,7 +5,7 @@ Beside ours stand the same gains without the shape of the demand, and the washou
 its frequencies as the drive train's, its damping as J_1 times that, with the authority that ours has.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
 from math import pi
 from random import Random
@@ -19,12 +19,15 @@ from driveline.harness.loop.places import PLACES, PLANTS
 from driveline.harness.loop.settings import Settings
 from driveline.harness.manoeuvres.catalogue import MANOEUVRES
 from driveline.harness.manoeuvres.for_car import for_car
+from driveline.harness.manoeuvres.manoeuvre import Manoeuvre
 from driveline.harness.metrics.evaluate import evaluate
 from driveline.harness.metrics.run_metrics import Metrics
-from driveline.harness.simulation.simulate import simulate
+from driveline.harness.simulation.simulate import planned
 from driveline.models.comparators.speed_washout import WashoutParameters
 from driveline.models.physics.vehicle import CAR
+from fmuloop.campaign import RunRequest
 from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 
 from .design_trials import mean
 from .goals import STEPS
@@ -74,14 +77,22 @@ def gains(car: Car, choice: str) -> Car:
     return scaled | {name: designed[name] for name in AUTHORITY}
 
 
-def measured(trial: Trial) -> Metrics:
-    """Means over the noise of three seeds."""
+def course(trial: Trial) -> Manoeuvre:
+    return for_car(MANOEUVRES[trial.manoeuvre], UNSEEN[trial.car]["T_max"])
+
+
+def needed(trial: Trial) -> list[RunRequest]:
+    """One with the noise of each of three seeds."""
     car = UNSEEN[trial.car]
     controller = WASHOUT if trial.choice == WASHOUT else OURS
     parameters = loop_parameters({**car, **gains(car, trial.choice)}, trial.plant, controller)
-    manoeuvre = for_car(MANOEUVRES[trial.manoeuvre], car["T_max"])
     its = Settings(plant=trial.plant, controller=controller, control=trial.choice != NONE, parameters=parameters)
-    return mean([evaluate(simulate(manoeuvre, its, seed=seed), manoeuvre) for seed in NOISE])
+    return [planned(course(trial), its, seed=seed) for seed in NOISE]
+
+
+def measured(trial: Trial, results: Sequence[Results]) -> Metrics:
+    """Means over the seeds."""
+    return mean([evaluate(run, course(trial)) for run in results])
 
 
 class Shown(NamedTuple):
@@ -114,7 +125,7 @@ Found = Mapping[tuple[str, str, str], Shown]
 def shown(names: Iterable[str], plants: Iterable[str] = PLANTS) -> dict[tuple[str, str, str], Shown]:
     """Of cars by their names."""
     todo = [Trial(*combination) for combination in product(names, plants, CHOICES, STEPS)]
-    of = dict(zip(todo, run_many(measured, todo, label="unseen cars"), strict=True))
+    of = dict(zip(todo, run_many(measured, todo, label="unseen cars", runs=needed), strict=True))
     by_key: dict[tuple[str, str, str], Shown] = {}
     for name, plant, choice in dict.fromkeys(trial[:3] for trial in todo):
         its = [of[Trial(name, plant, choice, manoeuvre)] for manoeuvre in STEPS]

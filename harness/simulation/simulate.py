@@ -1,8 +1,8 @@
 """One manoeuvre with one loop: the function that everything else runs the loop with."""
 
 import logging
-from collections.abc import Mapping
-from functools import lru_cache
+from collections.abc import Callable, Mapping
+from functools import lru_cache, partial
 from numbers import Real
 from sys import float_info
 from types import MappingProxyType
@@ -11,11 +11,11 @@ from typing import Any, Unpack
 import numpy as np
 
 from fmuloop.argument_kinds import require_kind
+from fmuloop.campaign import RunRequest
 from fmuloop.errors import RunEnded, SimulationError, WiringError
 from fmuloop.experiment import Experiment, Source, require_steps
 from fmuloop.interface import Interface
 from fmuloop.results import Results
-from fmuloop.runs import run
 from fmuloop.system import Port
 from fmuloop.wiring import Fit
 from toolground.collected_warnings import warn_once
@@ -69,6 +69,25 @@ def simulate(
         SimulationError: an FMU refused a call or ended the run before SHORTEST, or one that was given by its path
             crashed or hung.
     """
+    return planned(manoeuvre, settings, **changes).results()
+
+
+def planned(
+    manoeuvre: Manoeuvre, settings: Settings | ResolvedLoop | NameOrFile | None = None, **changes: Unpack[Changes]
+) -> RunRequest:
+    """The run that `simulate` makes of the same arguments, to be made later, or with others that are like it.
+
+        def settling(k_d, results):
+            return driveline.evaluate(results[0], tipin).settling_time
+
+        driveline.run_many(
+            settling, gains, runs=lambda k_d: [driveline.planned(tipin, parameters={"controller.k_d": k_d})]
+        )
+
+    Raises:
+        WiringError: a block, a parameter or an argument does not fit.
+        MemoryError: the results of so many steps do not fit in memory.
+    """
     require_kind("manoeuvre", manoeuvre, Manoeuvre, A_MANOEUVRE)
     resolved = as_given(settings, **changes)
     made = resolved.runs
@@ -86,8 +105,14 @@ def simulate(
         tolerance=made.tolerance,
         label=manoeuvre.name,
     )
+    return RunRequest(resolved.fit, experiment, partial(_finished, manoeuvre, resolved))
+
+
+def _finished(manoeuvre: Manoeuvre, resolved: ResolvedLoop, make: Callable[[], Results]) -> Results:
+    """The results of a run, and what there is to say of them."""
+    made = resolved.runs
     try:
-        results = run(resolved.fit, experiment)
+        results = make()
     except SimulationError as refusal:
         if {"plant.mu", "plant.g_muL", "plant.g_muR"}.isdisjoint(made.parameters) or "omega_wheel_" not in str(refusal):
             raise

@@ -8,16 +8,19 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from fmuloop.campaign import RunRequest
 from fmuloop.many_runs import many
+from fmuloop.results import Results
 from fmuloop.system import System
 
 from ...loop.places import PLACES, PLANTS
 from ...loop.settings import Settings, loop
 from ...manoeuvres.for_car import for_car, given_torque
+from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
-from ...simulation.simulate import simulate
+from ...simulation.simulate import planned
 from ..design import design
 from ..uncertainty_box import deviating
 from .controller_cost import Costs, costs
@@ -65,13 +68,21 @@ class CostEvaluation:
         """The loop with a plant and a controller."""
         return loop(self.settings, plant=plant, controller=controller)
 
-    def measured(self, trial: Trial) -> Metrics:
-        """The metrics of one run."""
+    def planned(self, trial: Trial) -> RunRequest:
+        """The run."""
+        run, (manoeuvre, parameters) = trial.run, self._car(trial)
+        its = self.settings.replace(plant=run.plant, controller=trial.controller, parameters=parameters, seed=run.seed)
+        return planned(manoeuvre, its)
+
+    def measured(self, trial: Trial, results: Sequence[Results]) -> Metrics:
+        """The metrics of the run."""
+        return evaluate(results[0], self._car(trial)[0])
+
+    def _car(self, trial: Trial) -> tuple[Manoeuvre, dict[str, float]]:
+        """What the car is driven through, and its parameters."""
         controller, parameters, run = trial
         of_loop = deviating({**self.car, **parameters}, run.plant, controller, run.deviation)
-        manoeuvre = for_car(run.manoeuvre, given_torque(of_loop))
-        settings = self.settings.replace(plant=run.plant, controller=controller, parameters=of_loop, seed=run.seed)
-        return evaluate(simulate(manoeuvre, settings), manoeuvre)
+        return for_car(run.manoeuvre, given_torque(of_loop)), of_loop
 
     def reference(self) -> dict[str, float]:
         """The gains that are computed for the car."""
@@ -94,11 +105,11 @@ class CostEvaluation:
         """
         expected, evaluation = self.digests(), replace(self, settings=anywhere(self.settings))
 
-        def measured(trial: Trial) -> Metrics:
+        def needed(trial: Trial) -> list[RunRequest]:
             require_same_fmus(expected)
-            return evaluation.measured(trial)
+            return [evaluation.planned(trial)]
 
-        with many(measured, workers, executor) as answers:
+        with many(evaluation.measured, workers, executor, runs=needed) as answers:
 
             def metrics(controller: str, candidates: Sequence[Mapping[str, float]]) -> Iterator[list[Metrics]]:
                 trials = (Trial(controller, candidate, run) for candidate in candidates for run in self.runs)

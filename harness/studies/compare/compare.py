@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from fmuloop.campaign import RunRequest
 from fmuloop.results import Results
 from toolground.errors import UserError
 
@@ -20,7 +21,7 @@ from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import at_samples, evaluate
 from ...metrics.run_metrics import Metrics
-from ...simulation.simulate import simulate
+from ...simulation.simulate import planned
 from ...views.figure_options import PLAIN, FigureOptions
 from ...views.metrics_table import DAMPINGS, Row, values, write_markdown, write_metrics
 from ...views.signal_lines import WITHOUT
@@ -122,14 +123,18 @@ def loops_of(given: Loops) -> Loops:
     return {**given, **off}
 
 
-def run_case(
-    case: Case, output: Path, loops: Loops, manoeuvres: Manoeuvres = MANOEUVRES, format: str = "csv"
+def needed(case: Case, loops: Loops, manoeuvres: Manoeuvres) -> list[RunRequest]:
+    """The run of a case."""
+    return [planned(manoeuvres[case.manoeuvre], loops[case.plant, case.controller])]
+
+
+def _outcomes(
+    case: Case, runs: Sequence[Results], output: Path, loops: Loops, manoeuvres: Manoeuvres, format: str
 ) -> list[Outcome]:
-    """Simulates a case, writes its signals at the controller's samples to the folder `output` and evaluates it."""
-    manoeuvre, resolved = manoeuvres[case.manoeuvre], loops[case.plant, case.controller]
-    results = simulate(manoeuvre, resolved)
-    write_signals(at_samples(results), output / case.file_name, format)
-    return outcomes_of(case, manoeuvre, results, resolved.settings.topology)
+    """Writes the signals of a case at the controller's samples to the folder `output` and evaluates its run."""
+    write_signals(at_samples(runs[0]), output / case.file_name, format)
+    topology = loops[case.plant, case.controller].settings.topology
+    return outcomes_of(case, manoeuvres[case.manoeuvre], runs[0], topology)
 
 
 def outcomes_of(case: Case, manoeuvre: Manoeuvre, results: Results, topology: Topology) -> list[Outcome]:
@@ -156,8 +161,9 @@ def run_cases(
     """
     from fmuloop.many_runs import run_many  # one run does without
 
-    run = partial(run_case, output=output / RUNS, loops=loops, manoeuvres=manoeuvres, format=format)
-    outcomes = [outcome for of_case in run_many(run, todo) for outcome in of_case]
+    plan = partial(needed, loops=loops, manoeuvres=manoeuvres)
+    judge = partial(_outcomes, output=output / RUNS, loops=loops, manoeuvres=manoeuvres, format=format)
+    outcomes = [outcome for of_case in run_many(judge, todo, runs=plan) for outcome in of_case]
     draw = partial(_figure, folder=output, options=options, manoeuvres=manoeuvres)
     figures = run_many(draw, drawn(outcomes, manoeuvres), label="drawing")
     return outcomes, [file for files in figures for file in files]

@@ -1,12 +1,13 @@
 """Runs without and with damping, side by side, as a program asks for them."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from os import PathLike
 from typing import Unpack
 
 from fmuloop.argument_kinds import require_each
 from fmuloop.many_runs import run_many
+from fmuloop.results import Results
 from toolground.errors import UserError
 
 from ...loop.arguments import BLOCKS
@@ -19,8 +20,7 @@ from ...manoeuvres.catalogue import COMPARED, MANOEUVRES
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
 from ...metrics.run_metrics import Metrics
-from ...simulation.simulate import simulate
-from .compare import Case, Loops, cases, loops_of
+from .compare import Case, Loops, cases, loops_of, needed
 
 
 def compare(
@@ -65,11 +65,14 @@ def compare(
     mapped = mappings(common.mapping, each[0], each[1], common.limits)
     resolved = {(p, c): resolve(common, plant=p, controller=c, mapping=own) for (p, c), own in mapped.items()}
     loops = loops_of(resolved)
-    one = partial(_metrics, manoeuvres=by_name, loops=loops)
-    return {case: metrics for of_case in run_many(one, todo, label="comparing") for case, metrics in of_case.items()}
+    plan = partial(needed, manoeuvres=by_name, loops=loops)
+    judge = partial(_metrics, manoeuvres=by_name, loops=loops)
+    answers = run_many(judge, todo, label="comparing", runs=plan)
+    return {case: metrics for of_case in answers for case, metrics in of_case.items()}
 
 
-def _metrics(case: Case, manoeuvres: Mapping[str, Manoeuvre], loops: Loops) -> dict[Case, Metrics]:
-    manoeuvre, resolved = manoeuvres[case.manoeuvre], loops[case.plant, case.controller]
-    results, units = simulate(manoeuvre, resolved), resolved.settings.topology.units
-    return {case._replace(plant=unit.named(case.plant)): evaluate(of_unit(results, unit), manoeuvre) for unit in units}
+def _metrics(
+    case: Case, runs: Sequence[Results], manoeuvres: Mapping[str, Manoeuvre], loops: Loops
+) -> dict[Case, Metrics]:
+    manoeuvre, units = manoeuvres[case.manoeuvre], loops[case.plant, case.controller].settings.topology.units
+    return {case._replace(plant=unit.named(case.plant)): evaluate(of_unit(runs[0], unit), manoeuvre) for unit in units}

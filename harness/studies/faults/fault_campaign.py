@@ -3,10 +3,13 @@
 from collections.abc import Iterable, Mapping, MutableMapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 from hashlib import sha256
 from math import inf, isfinite
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from fmuloop.errors import RunEnded
 from fmuloop.many_runs import run_many
@@ -102,13 +105,14 @@ def campaign(
         known, workers, executor: see `harness.simulation.many_runs.run_many`.
     """
     cases = [case(number, seed, runner.plants, plan) for number in numbers]
-    return run_many(lambda each: outcome(runner, each), cases, workers, "faults", executor, known)
+    judge = partial(outcome, runner)
+    return run_many(judge, cases, workers, "faults", executor, known, runs=runner.planned)
 
 
-def outcome(runner: FaultRunner, each: Case) -> Outcome:
-    """What comes of a case; one that an FMU ends is clean in the eyes of no judge."""
+def outcome(runner: FaultRunner, each: Case, results: Sequence[np.ndarray]) -> Outcome:
+    """What comes of a case, from the results of its runs; one that an FMU ends is clean in the eyes of no judge."""
     try:
-        runs = runner.runs(each)
+        runs = runner.completed(each, results)
     except RunEnded as reason:
         warn_once(f"case {each}: {reason}")
         return Outcome(each, {judge.name: inf for judge in JUDGES})

@@ -1,6 +1,6 @@
 """Fault injection: the loop with SignalFaults between sensors and controller, and the three runs of a case."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.lib.recfunctions import append_fields, repack_fields
 
+from fmuloop.campaign import RunRequest
 from fmuloop.errors import RunEnded
 from fmuloop.experiment import Experiment
-from fmuloop.runs import run
+from fmuloop.results import Results
 from fmuloop.system import Connection, Port, System
 from fmuloop.wiring import Fit, fit
 
@@ -110,7 +111,8 @@ class FaultRunner:
         }
         self.plants = tuple(self._loops)
         self.digests = digests(map(self._system, self.plants))
-        self._made: dict[Any, np.ndarray] = {}
+        self._kept: dict[tuple[Any, ...], list[np.ndarray]] = {}
+        self._shared: dict[tuple[Any, ...], list[RunRequest]] = {}
         self._fitted: dict[str, Fit] = {}
 
     def runs(self, case: Case) -> Runs:
@@ -121,14 +123,36 @@ class FaultRunner:
             RunEnded: an FMU ended a run before its time.
             SimulationError: an FMU cannot be loaded, or refused a call.
         """
+        return self.completed(case, [request.results() for request in self.planned(case)])
+
+    def planned(self, case: Case) -> list[RunRequest]:
+        """The run with the faults of signals and, unless they are kept, those without these: with and without control.
+
+        Raises:
+            UserError: an FMU is not the one that it is where the campaign was begun.
+        """
         require_same_fmus(self.digests)
-        on_ice = tuple(fault for fault in case.faults if fault.name in (LOCK, SPIN))
-        common = case.plant, case.situation, case.noise, on_ice
-        return Runs(
-            faulty=self._run(*common, faults=tuple(fault for fault in case.faults if fault.kind.number)),
-            healthy=self._shared(*common, control=True),
-            undamped=self._shared(*common, control=False),
-        )
+        common = _in_common(case)
+        faulty = self._request(*common, faults=tuple(fault for fault in case.faults if fault.kind.number))
+        if common in self._kept:
+            return [faulty]
+        if common not in self._shared:
+            self._shared[common] = [self._request(*common, control=control) for control in (True, False)]
+        return [faulty, *self._shared[common]]
+
+    def completed(self, case: Case, results: Sequence[np.ndarray]) -> Runs:
+        """The three runs, from the results of those that were planned.
+
+        Raises:
+            RunEnded, SimulationError: as of `runs`.
+        """
+        common = _in_common(case)
+        faulty, *shared = results
+        if shared:
+            self._shared.pop(common, None)
+        if shared and not common[-1]:  # hardly two cases have the same ice
+            shared = self._kept[common] = [repack_fields(run[KEPT]) for run in shared]
+        return Runs(faulty, *(shared or self._kept[common]))
 
     def limits(self, plant: str) -> Limits:
         """As the parameters of the controller say."""
@@ -145,15 +169,7 @@ class FaultRunner:
         fitted, status = self._fit(plant), self._loops[plant][1].own(STATUS)
         return fitted.file(status) if status in fitted.absent else None
 
-    def _shared(self, plant: str, situation: str, noise: int, on_ice: tuple[Fault, ...], control: bool) -> np.ndarray:
-        key = plant, situation, noise, on_ice, control
-        if on_ice:
-            return self._run(*key[:4], control=control)
-        if key not in self._made:
-            self._made[key] = repack_fields(self._run(*key[:4], control=control)[KEPT])
-        return self._made[key]
-
-    def _run(
+    def _request(
         self,
         plant: str,
         situation: str,
@@ -161,7 +177,7 @@ class FaultRunner:
         on_ice: tuple[Fault, ...],
         faults: Sequence[Fault] = (),
         control: bool = True,
-    ) -> np.ndarray:
+    ) -> RunRequest:
         manoeuvre = for_car(_with(on_ice, SITUATIONS[situation].manoeuvre), self._loops[plant][0].T_max)
         road = {**manoeuvre.road, "mu": ICE} if on_ice else manoeuvre.road
         loop, unit = self._loops[plant]
@@ -174,10 +190,7 @@ class FaultRunner:
                 inputs[unit.own(roles.ENABLE)] = partial(np.less_equal, fault.end)
         given = {"inputs": inputs, "parameters": parameters, "label": manoeuvre.name}
         system = with_faults(resolved.system, self._injector, topology)
-        results = run(system, Experiment(manoeuvre.duration, **given))
-        if results.ended:
-            raise RunEnded(f"{results.ended}: there is nothing to judge")
-        return _completed(at_samples(of_unit(results, unit)))
+        return RunRequest(system, Experiment(manoeuvre.duration, **given), partial(_completed, unit))
 
     def _fit(self, plant: str) -> Fit:
         if plant not in self._fitted:
@@ -190,9 +203,19 @@ class FaultRunner:
         return with_faults(resolved.system, self._injector, resolved.settings.topology)
 
 
-def _completed(run: np.ndarray) -> np.ndarray:
-    """A run with what a controller has not told: the torque that it adds to the demand of the sample before, and a
-    status that stands for none."""
+def _in_common(case: Case) -> tuple[str, str, int, tuple[Fault, ...]]:
+    """What a case shares with those whose runs without faults of signals are the same."""
+    on_ice = tuple(fault for fault in case.faults if fault.name in (LOCK, SPIN))
+    return case.plant, case.situation, case.noise, on_ice
+
+
+def _completed(unit: DriveUnit, make: Callable[[], Results]) -> np.ndarray:
+    """A run of a drive unit at the samples of the controller, with what that has not told: the torque that it adds to
+    the demand of the sample before, and a status that stands for none."""
+    results = make()
+    if results.ended:
+        raise RunEnded(f"{results.ended}: there is nothing to judge")
+    run = at_samples(of_unit(results, unit))
     lacking = [name for name in (STATUS, T_DAMP) if name not in (run.dtype.names or ())]
     demand = run[roles.DEMAND]
     told = {STATUS: np.zeros(len(run)), T_DAMP: run[roles.REFERENCE_TORQUE] - np.append(demand[:1], demand[:-1])}

@@ -1,12 +1,13 @@
 """The loop of a case: a plant and a controller, with car and sensors as they were drawn."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import nan
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from fmuloop.campaign import RunRequest
 from fmuloop.errors import RunEnded, SimulationError, UnpackingError
 from fmuloop.results import Results
 from toolground.collected_warnings import warn_once
@@ -22,7 +23,7 @@ from ...manoeuvres.for_car import for_car, share_of
 from ...manoeuvres.manoeuvre import Manoeuvre
 from ...metrics.evaluate import evaluate
 from ...simulation.same_fmus import anywhere, digests, require_same_fmus
-from ...simulation.simulate import simulate
+from ...simulation.simulate import planned
 from .draws import draw
 from .outcome import METRICS, PEAK, Case, Outcome
 
@@ -75,25 +76,37 @@ class CaseRunner:
             UserError: an FMU is not the one that it is where the campaign was begun.
             SimulationError: see `driveline.simulate`.
         """
+        return of_unit(self._request(case, control).results(), self.loops[case.plant, case.controller].unit)
+
+    def planned(self, case: Case) -> list[RunRequest]:
+        """The run of a case.
+
+        Raises:
+            UserError: an FMU is not the one that it is where the campaign was begun.
+        """
+        return [self._request(case, control=True)]
+
+    def _request(self, case: Case, control: bool) -> RunRequest:
         one, drawn = self.loops[case.plant, case.controller], draw(case.number, self.seed)
         require_same_fmus(one.digests)
         resolved = one.resolved.with_parameters(changed(one.blocks, drawn.deviation))
-        return of_unit(simulate(self.manoeuvre(case), resolved, control=control, seed=drawn.noise), one.unit)
+        return planned(self.manoeuvre(case), resolved, control=control, seed=drawn.noise)
 
-    def outcome(self, case: Case) -> Outcome:
-        """What came of a case; one that an FMU ends has no metrics.
+    def outcome(self, case: Case, runs: Sequence[Results]) -> Outcome:
+        """What came of a case, from its run; one that an FMU ends has no metrics.
 
         Raises:
             UnpackingError: an FMU cannot be unpacked or loaded on this machine.
         """
         try:
-            results = self.results(case)
+            (results,) = runs
             if results.ended:
                 raise RunEnded(str(results.ended))
         except UnpackingError:
             raise  # that is the machine, and not the controller
         except SimulationError as reason:
             return Outcome(case, {metric.name: nan for metric in METRICS}, plain(reason))
+        results = of_unit(results, self.loops[case.plant, case.controller].unit)
         metrics = evaluate(results, self.manoeuvre(case))
         peak = float(np.abs(results[roles.GEAR_TORQUE]).max()) / self._T_max(case)
         return Outcome(case, {m.name: peak if m is PEAK else m.of(metrics) for m in METRICS})

@@ -38,7 +38,8 @@ def campaign(
         numbers: of the draws.
         known, workers, executor: see `harness.simulation.many_runs.run_many`.
     """
-    found = run_many(runner.outcome, cases(runner.loops, numbers), workers, "robustness", executor, known)
+    todo = cases(runner.loops, numbers)
+    found = run_many(runner.outcome, todo, workers, "robustness", executor, known, runs=runner.planned)
     return [replace(each, share=runner.share(each.case)) for each in found]
 
 

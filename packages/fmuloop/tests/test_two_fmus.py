@@ -11,6 +11,7 @@ from fmutesting.blocks import FOLDER, build
 from fmublocks.native.lanes import build_lanes
 from fmublocks.own_file import fmu_in
 from fmuloop import Connection, Experiment, Port, SimulationError, System, WiringError, loaded, run, run_many
+from fmuloop.campaign import RunRequest
 from toolground.lanes_here import lanes_here
 
 
@@ -80,9 +81,14 @@ def test_runs_in_the_lanes_of_the_processor_are_the_runs_one_by_one(system: Syst
         asked.append(system)
         return libraries
 
-    side_by_side = replace(system, own=frozenset(names), lane_libraries=lane_libraries)
+    with_lanes = replace(system, own=frozenset(names), lane_libraries=lane_libraries)
     gains = [0.25 * k for k in range(40)]
-    answers = run_many(lambda k_i: settled(k_i, side_by_side), gains, workers=1)
+    answers = run_many(
+        lambda _, results: float(results[0]["plant.y"][-1]),
+        gains,
+        workers=1,
+        runs=lambda k_i: [RunRequest(with_lanes, step(parameters={"controller.k_i": k_i}))],
+    )
     assert asked
     assert answers == pytest.approx([settled(k_i, system) for k_i in gains], rel=1e-12)
 

@@ -20,7 +20,6 @@ from toolground.optional_packages import required
 from toolground.plain_text import plain
 
 from .runs import KeptLoops, kept_by
-from .side_by_side import BatchedRuns
 from .workers import answered_by, collect_warnings
 
 TIMEOUT = 10.0
@@ -63,9 +62,7 @@ async def _knock(address: str) -> None:
         await (await connect(address, timeout=TIMEOUT)).close()
 
 
-def submitting(
-    function: Callable[[Any], Any] | BatchedRuns, executor: Executor
-) -> Callable[[Sequence[Any]], "Future[Any]"]:
+def submitting(function: Callable[[Any], Any], executor: Executor) -> Callable[[Sequence[Any]], "Future[Any]"]:
     """What submits a batch of cases and gives the future of what `answered_by` gives for them."""
     sent = uuid4().hex, version("fmuloop"), dumps(function)
 

@@ -1,7 +1,8 @@
 """The archive of an FMU, which anybody may have made: looked at before anything is unpacked."""
 
 import stat
-from collections.abc import Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
+from functools import lru_cache
 from io import FileIO
 from pathlib import Path
 from typing import NamedTuple
@@ -90,11 +91,24 @@ def entries(path: Path) -> list[ZipInfo]:
 
 
 def described(path: Path, limits: Limits = USUAL_LIMITS) -> bytes:
-    """The model description.
+    """The model description; a file that has not changed is not read again.
 
     Raises:
         WiringError: the archive is none, has none, or is not to be unpacked.
     """
+    return _described(path, limits, version(path))
+
+
+def version(path: Path) -> Hashable:
+    """What changes with the content of a file; None where there is none."""
+    if not path.is_file():
+        return None
+    status = path.stat()
+    return path.absolute(), status.st_ino, status.st_mtime_ns, status.st_size
+
+
+@lru_cache(16)
+def _described(path: Path, limits: Limits, _version: Hashable) -> bytes:
     contents = entries(path)
     for problem in problems(contents, limits):
         raise WiringError(f"{path} is not unpacked: {problem.text}")

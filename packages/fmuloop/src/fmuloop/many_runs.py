@@ -8,13 +8,26 @@ def settling(k_d: float) -> float:
 
 times = run_many(settling, np.linspace(0.0, 5.0, 1000))
 ```
+
+Where cases say beforehand which runs they need, and judge their results, runs that are alike are made together:
+
+```python
+def needed(k_d: float) -> list[RunRequest]:
+    return [planned(tipin, "ValidationVehicle", parameters={"controller.k_d": k_d})]
+
+
+def settling(k_d: float, results: Sequence[Results]) -> float:
+    return evaluate(results[0], tipin).settling_time
+
+
+times = run_many(settling, np.linspace(0.0, 5.0, 1000), runs=needed)
+```
 """
 
 import os
 from collections.abc import Callable, Iterable, Iterator, MutableMapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future, wait
 from contextlib import AbstractContextManager, contextmanager, suppress
-from itertools import islice
 from pathlib import Path
 from pickle import loads
 from textwrap import shorten
@@ -26,9 +39,9 @@ from toolground.lanes_here import lanes_here
 from toolground.plain_text import words
 from toolground.progress import progress
 
+from .campaign import MANY, Campaign, RunRequest, batched, outcomes
 from .errors import SimulationError
 from .runs import kept_loaded
-from .side_by_side import MANY, BatchedRuns, outcomes
 
 if TYPE_CHECKING:
     from .workers import Submitted
@@ -47,28 +60,32 @@ Answer = TypeVar("Answer")
 
 
 def run_many(
-    function: Callable[[Case], Answer],
+    function: Callable[..., Answer],
     cases: Iterable[Case],
     workers: int | None = None,
     label: str = "simulating",
     executor: Executor | None = None,
     known: MutableMapping[Case, Answer] | None = None,
     batch: int = 1,
+    runs: Callable[[Case], Sequence[RunRequest]] | None = None,
 ) -> list[Answer]:
     """What a function gives for each of the cases, in their order.
 
     A system of FMUs that the function runs stays loaded for the next case. A case whose process was lost is run once
-    more. Of 32 cases and more (MANY), and wherever answers are `known`, which must not depend on how many are asked for
-    at once, runs of the same native FMUs of the project are made side by side in the lanes of the processor. They
-    differ from single runs by the rounding of single operations.
+    more.
 
     Args:
+        function: of a case; with `runs` it judges, of a case and the results of its runs: a sequence, which raises the
+            error of a run where that is taken.
         workers: processes that share the cases; with 1 it is this process. None: one a core.
         label: of the progress display.
         executor: of `concurrent.futures`, which runs the cases then: `client.get_executor()` of a Dask client.
         known: answers by cases, which are hashable then. They are not asked for again; those that are missing are
             added, in the order of the cases, each as soon as it is there.
         batch: cases that a worker is given at a time; more where many are brief and workers are far.
+        runs: gives those that a case needs. Of 32 cases and more (MANY), and wherever answers are `known`, which must
+            not depend on how many are asked for at once, runs of the same native FMUs of the project are made side by
+            side in the lanes of the processor then. They differ from single runs by the rounding of single operations.
 
     Raises:
         Exception: what the function raised first in the order of the cases; its message or a note names the case.
@@ -79,9 +96,10 @@ def run_many(
     todo = every if known is None else [case for case in dict.fromkeys(every) if case not in known]
     count = min(workers or cores(), max(len(todo), 1))
     _require_batch(batch)
-    if in_lanes := _goes_in_lanes(len(every) if known is None else MANY):
+    work = _campaign(function, runs, len(every) if known is None else MANY)
+    if _is_in_lanes(work):
         batch = max(batch, min(MANY, -(-len(todo) // count)))
-    with _many(function, count, executor, batch, in_lanes) as answered, progress(len(every), label) as done:
+    with _many(work, count, executor, batch) as answered, progress(len(every), label) as done:
         done(len(every) - len(todo))
         for case, answer in zip(todo, answered(todo), strict=True):
             if known is not None:
@@ -93,7 +111,11 @@ def run_many(
 
 @contextmanager
 def many(
-    function: Callable[[Case], Answer], workers: int | None = None, executor: Executor | None = None, batch: int = 1
+    function: Callable[..., Answer],
+    workers: int | None = None,
+    executor: Executor | None = None,
+    batch: int = 1,
+    runs: Callable[[Case], Sequence[RunRequest]] | None = None,
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     """What gives the answers for cases, in their order, and can be asked again: processes and FMUs stay loaded.
 
@@ -102,25 +124,31 @@ def many(
 
     Cases are asked for a few ahead of the answers, and neither are kept: ten million take the memory of a hundred.
 
-    They are answered in lanes where batches are of MANY. Args and errors as of `run_many`.
+    The runs of `runs` are made in lanes where batches are of MANY. Args and errors as of `run_many`.
     """
     require_workers(workers)
     _require_batch(batch)
-    with _many(function, workers or cores(), executor, batch, _goes_in_lanes(batch)) as answered:
+    with _many(_campaign(function, runs, batch), workers or cores(), executor, batch) as answered:
         yield answered
 
 
-def _goes_in_lanes(cases: int) -> bool:
-    return cases >= MANY and lanes_here() > 0
+def _campaign(
+    function: Callable[..., Answer], runs: Callable[[Case], Sequence[RunRequest]] | None, cases: int
+) -> Callable[[Case], Answer]:
+    """What answers a case."""
+    return Campaign(runs, function, cases >= MANY and lanes_here() > 0) if runs else function
+
+
+def _is_in_lanes(work: Callable[[Any], Any]) -> bool:
+    return isinstance(work, Campaign) and work.in_lanes
 
 
 def _many(
-    function: Callable[[Case], Answer], count: int, executor: Executor | None, batch: int, in_lanes: bool
+    work: Callable[[Case], Answer], count: int, executor: Executor | None, batch: int
 ) -> AbstractContextManager[Callable[[Iterable[Case]], Iterator[Answer]]]:
-    work = BatchedRuns(function) if in_lanes else function
     if executor is not None:
         return _on_executor(work, executor, batch)
-    return _here(work, batch if in_lanes else 1) if count == 1 else _in_workers(work, count, batch)
+    return _here(work, batch if _is_in_lanes(work) else 1) if count == 1 else _in_workers(work, count, batch)
 
 
 def _require_batch(batch: int) -> None:
@@ -144,9 +172,7 @@ def cores() -> int:
 
 
 @contextmanager
-def _here(
-    function: Callable[[Case], Answer] | BatchedRuns, batch: int
-) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
+def _here(function: Callable[[Case], Answer], batch: int) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     def answered(cases: Iterable[Case]) -> Iterator[Answer]:
         for part in batched(cases, batch):
             for case, (answer, error) in zip(part, outcomes(function, part), strict=True):
@@ -162,7 +188,7 @@ def _here(
 
 @contextmanager
 def _in_workers(
-    function: Callable[[Case], Answer] | BatchedRuns, count: int, batch: int
+    function: Callable[[Case], Answer], count: int, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     from .workers import Lost, Workers, in_order
 
@@ -182,7 +208,7 @@ def _in_workers(
 
 @contextmanager
 def _on_executor(
-    function: Callable[[Case], Answer] | BatchedRuns, executor: Executor, batch: int
+    function: Callable[[Case], Answer], executor: Executor, batch: int
 ) -> Iterator[Callable[[Iterable[Case]], Iterator[Answer]]]:
     from .executors import MOST_UNDER_WAY, losses, submitting
     from .workers import in_order
@@ -194,13 +220,6 @@ def _on_executor(
             yield from _gathered(each, submit, losses())
 
     yield answered
-
-
-def batched(cases: Iterable[Case], size: int) -> Iterator[list[Case]]:
-    """So many at a time, the last ones fewer; what comes later is not asked for yet."""
-    left = iter(cases)
-    while batch := list(islice(left, size)):
-        yield batch
 
 
 def _gathered(

@@ -9,6 +9,7 @@ from toolground.interruption import unswallowed
 
 from .errors import SimulationError
 from .experiment import Experiment
+from .fmu_archive import version
 from .loading import IsolatedLoop, loaded
 from .master import Loop
 from .results import Results
@@ -78,7 +79,7 @@ class KeptLoops:
 
     def loop(self, system: System, inputs: Iterable[str], parameters: Iterable[str]) -> Loop | IsolatedLoop:
         """The loop of a system after reset, or as `loaded` gives it."""
-        key = system.key, *map(_version, system.instances.values())
+        key = system.key, *map(version, system.instances.values())
         stack, loop = self._loops.pop(key, (ExitStack(), None))
         try:
             if loop is not None:
@@ -107,11 +108,3 @@ class _Thread(local):
 
 
 _here = _Thread()
-
-
-def _version(path: Path) -> Hashable:
-    """What changes with the content of a file."""
-    if not path.is_file():
-        return None
-    status = path.stat()
-    return path.absolute(), status.st_mtime_ns, status.st_size

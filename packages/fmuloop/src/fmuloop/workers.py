@@ -24,10 +24,10 @@ from toolground.interruption import uninterrupted_children
 from toolground.plain_text import words
 from toolground.progress import hidden
 
+from .campaign import outcomes
 from .errors import SimulationError
 from .row_file import keep_freed
 from .runs import kept_loaded
-from .side_by_side import BatchedRuns, outcomes
 
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
 """The environment of a worker: the cores are shared by processes, and threads of linear algebra that wait for each
@@ -52,7 +52,7 @@ class Workers:
     """New interpreters (FMUs that run Python do not survive a fork), each asked by a thread; one that is lost is
     replaced."""
 
-    def __init__(self, function: Callable[[Any], Any] | BatchedRuns, count: int) -> None:
+    def __init__(self, function: Callable[[Any], Any], count: int) -> None:
         """
         Args:
             function: of a case.
@@ -143,7 +143,7 @@ def _answer_cases(questions: BinaryIO, answers: BinaryIO) -> None:
             answers.flush()
 
 
-def _pickled_answer(function: Callable[[Any], Any] | BatchedRuns, batch: Sequence[Any]) -> bytes:
+def _pickled_answer(function: Callable[[Any], Any], batch: Sequence[Any]) -> bytes:
     """The answers, the error that was raised instead, and where."""
     try:
         return dumps((answered_by(function, batch), None, ""))
@@ -156,10 +156,10 @@ def collect_warnings() -> None:
     logging.getLogger().addHandler(_collected)
 
 
-def answered_by(function: Callable[[Any], Any] | BatchedRuns, batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:
+def answered_by(function: Callable[[Any], Any], batch: Sequence[Any]) -> list[tuple[bytes, list[str]]]:
     """In a worker: the answers as pickle has them and what was warned of, up to a case that raises an error, or whose
     answer cannot be pickled, which is raised if it is the first; what cannot be sent to the process that waits is told
-    in words. Where cases are answered side by side, the first answer has the warnings of all."""
+    in words. Where runs of several cases are made together, the first answer has the warnings of all."""
     answers: list[tuple[bytes, list[str]]] = []
     with hidden(), _collected.new() as texts:
         for answer, error in outcomes(function, batch):

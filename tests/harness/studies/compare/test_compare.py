@@ -81,7 +81,7 @@ def test_a_mapping_is_for_the_controllers_that_have_its_names(native, tmp_path, 
     def mappings(todo, loops):
         return [{case: loops[case.plant, case.controller].settings.mapping} for case in todo]
 
-    monkeypatch.setattr(side_by_side, "run_many", lambda one, todo, label: mappings(todo, one.keywords["loops"]))
+    monkeypatch.setattr(side_by_side, "run_many", lambda *a, runs, **_: mappings(a[1], runs.keywords["loops"]))
     tipin, given = driveline.MANOEUVRES["tipin15"], {"folder": native.parent}
     blocks = ["TwoMassDriveline"], [OURS, theirs]
     found = driveline.compare([tipin], *blocks, mapping={"controller.T_ref": "out"}, **given)

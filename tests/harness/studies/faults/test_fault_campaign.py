@@ -4,7 +4,6 @@ import shutil
 from collections import Counter
 from dataclasses import astuple
 from hashlib import sha256
-from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -22,6 +21,8 @@ from driveline.harness.studies.faults.fault_injection import FaultRunner, with_f
 from driveline.harness.studies.faults.judges import JUDGES
 from driveline.models import signal_faults
 from driveline.models.controller import supervision
+from fmuloop.campaign import Outcome as Answered
+from fmuloop.campaign import RunResults
 from fmuloop.errors import RunEnded
 from fmuloop.experiment import Experiment
 from fmuloop.runs import run
@@ -124,13 +125,10 @@ def test_a_controller_that_tells_neither_status_nor_torque_is_judged_by_the_rest
 
 
 def test_a_case_that_an_fmu_ends_is_not_clean(caplog):
-    class Ended:
-        def runs(self, _):
-            raise RunEnded("plant (car.fmu) ended the run at 2 s")
-
+    ended = RunResults([Answered(None, RunEnded("plant (car.fmu) ended the run at 2 s"))])
     warn_once.cache_clear()
     each = case(1, 1, PLANTS)
-    found = outcome(cast(Any, Ended()), each)
+    found = outcome(object.__new__(FaultRunner), each, ended)
     assert found.failed == tuple(judge.name for judge in JUDGES if judge.name not in each.plan.excused)
     cells = [str(cell) for cell in table(1, PLANTS).cells(each, found)]
     assert table(1, PLANTS).parsed(cells) == (each, found)

@@ -19,7 +19,10 @@ from driveline.harness.studies.robustness.case_runs import CaseRunner
 from driveline.harness.studies.robustness.draws import draw
 from driveline.harness.studies.robustness.outcome import ROBUSTNESS_MANOEUVRES, Case
 from driveline.harness.studies.robustness.robustness_campaign import RUNS, campaign, cases
+from fmuloop.campaign import Outcome as Answered
+from fmuloop.campaign import RunResults
 from fmuloop.errors import SimulationError, UnpackingError
+from fmuloop.many_runs import run_many
 from fmuloop.results import Ended, Results
 from tests.harness.studies.robustness import outcome
 from toolground.errors import UserError
@@ -38,7 +41,10 @@ class Pretended(CaseRunner):
     def share(self, case):
         return 1.0
 
-    def outcome(self, case):
+    def planned(self, case):
+        return []
+
+    def outcome(self, case, runs):
         if len(self.asked) == self._fails_at:
             raise UserError("stopped")
         self.asked.append(case)
@@ -46,24 +52,20 @@ class Pretended(CaseRunner):
 
 
 @pytest.mark.parametrize("error", [SimulationError, UnpackingError])
-def test_what_an_fmu_refuses_is_an_outcome_and_what_the_machine_refuses_is_not(error, monkeypatch):
-    def refused(self, case):
-        raise error("no space left")
-
-    monkeypatch.setattr(CaseRunner, "results", refused)
+def test_what_an_fmu_refuses_is_an_outcome_and_what_the_machine_refuses_is_not(error):
+    refused = RunResults([Answered(None, error("no space left"))])
     case = cases(LOOPS, [1])[0]
     if error is UnpackingError:
         with pytest.raises(UnpackingError, match="no space left"):
-            CaseRunner.outcome(Pretended(), case)
+            CaseRunner.outcome(Pretended(), case, refused)
     else:
-        assert CaseRunner.outcome(Pretended(), case).reason == "no space left"
+        assert CaseRunner.outcome(Pretended(), case, refused).reason == "no space left"
 
 
-def test_a_run_that_an_fmu_ends_is_neither_bounded_nor_quiet(monkeypatch):
+def test_a_run_that_an_fmu_ends_is_neither_bounded_nor_quiet():
     ended = Results(np.zeros(3, [("time", float)]), {})
     ended.ended = Ended("plant (car.fmu)", 2.0)
-    monkeypatch.setattr(CaseRunner, "results", lambda *_: ended)
-    found = CaseRunner.outcome(Pretended(), cases(LOOPS, [1])[0])
+    found = CaseRunner.outcome(Pretended(), cases(LOOPS, [1])[0], [ended])
     assert (found.reason, found.bounded, found.quiet) == ("plant (car.fmu) ended the run at 2 s", False, False)
 
 
@@ -113,7 +115,7 @@ def test_a_case_is_the_drawn_car_with_the_drawn_noise(controllers, plant, contro
     expected = simulate(MANOEUVRES["tipout"], plant, parameters=parameters, **settings)
     made = runner(controllers, plant, controller)
     assert (made.results(case) == expected).all()
-    metrics, found = evaluate(expected, MANOEUVRES["tipout"]), made.outcome(case).measured
+    metrics, found = evaluate(expected, MANOEUVRES["tipout"]), made.outcome(case, [expected]).measured
     assert found["settling_time"] == metrics.settling_time
     assert found["gear_torque_peak"] == np.abs(expected["plant.T_gear"]).max() / 180.0
 
@@ -139,7 +141,8 @@ def test_a_factor_is_on_what_was_set(controllers):
 
 def test_an_fmu_that_refuses_the_run_is_a_run_without_metrics(controllers):
     case = Case("ValidationVehicle", "DampingController", 1, "tipout")
-    found = runner(controllers, parameters={"plant.r": 99.0}).outcome(case)
+    made = runner(controllers, parameters={"plant.r": 99.0})
+    (found,) = run_many(made.outcome, [case], workers=1, runs=made.planned)
     assert not found.bounded
     assert "plant" in found.reason
     assert "99" in found.reason
