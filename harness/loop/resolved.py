@@ -58,7 +58,7 @@ class ResolvedLoop:
     def fit(self) -> Fit:
         """The loop with the interfaces of its FMUs."""
         require_there(self.runs)
-        fitted = fit(self.system, parameters=self.runs.parameters)
+        fitted = fit(self.system, [port.name for port in self.system.inputs], self.runs.parameters)
         _warn_of_unfed(fitted, self.settings.topology)
         return fitted
 

@@ -79,8 +79,8 @@ class Settings:
             the place of the plant; `their_car.T_gear` is that of `their_car.fmu`; or the path of a file with them.
         limits: of FMUs that are given by their path.
         tolerance: relative, of FMUs that integrate; None: that of each FMU's default experiment.
-        topology: the drive units, or the path of a file that declares them, see `harness.loop.topology`; all have the
-            same motor, controller and bus.
+        topology: the drive units, or the path of a file that declares them, see docs/loop.md; all have the same
+            motor, controller and bus.
 
     Raises:
         WiringError: names a value that no run can take, whatever the FMUs are.

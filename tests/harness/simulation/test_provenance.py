@@ -18,9 +18,10 @@ from fmpy.util import read_csv
 from driveline.harness.commands.cli import main
 from driveline.harness.commands.jobs import distinguishing
 from driveline.harness.loop.resolved import as_given
-from driveline.harness.simulation import provenance, simulate
+from driveline.harness.simulation import provenance
 from driveline.harness.simulation.provenance import require_same_run
 from fmublocks.origin import ENTRY
+from fmuloop import campaign
 from fmuloop.interface import Interface
 from toolground.atomic_files import alone
 from toolground.errors import UserError
@@ -88,7 +89,7 @@ def test_another_run_does_not_replace_it(
 def test_a_folder_in_the_place_of_a_result_is_found_before_anything_runs(
     both_built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, ending: str
 ) -> None:
-    monkeypatch.setattr("driveline.harness.simulation.simulate.run", lambda *_: pytest.fail("it has run"))
+    monkeypatch.setattr("fmuloop.campaign.run", lambda *_: pytest.fail("it has run"))
     (tmp_path / f"{NAME}{ending}").mkdir()
     assert main([*RUN, "--replace", "--fmus", str(both_built), "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err == f"driveline simulate: {tmp_path / NAME}{ending} is a folder; a file is needed\n"
@@ -140,7 +141,7 @@ def test_a_run_that_stops_before_it_writes_leaves_all_as_it_was(
         raise KeyboardInterrupt
 
     before = {path: path.read_bytes() for path in made.iterdir()}
-    monkeypatch.setattr(simulate, "run", stopped)
+    monkeypatch.setattr(campaign, "run", stopped)
     assert main([*RUN, "--replace", "--fmus", str(both_built), "--output", str(made)]) != 0
     assert {path: path.read_bytes() for path in made.iterdir()} == before
 
@@ -152,8 +153,8 @@ def test_of_two_runs_into_one_folder_at_once_the_later_is_refused(
         copytree(made, tmp_path, dirs_exist_ok=True)
         return run(*arguments)
 
-    run = simulate.run
-    monkeypatch.setattr(simulate, "run", run_while_another_ends)
+    run = campaign.run
+    monkeypatch.setattr(campaign, "run", run_while_another_ends)
     assert main([*RUN, "--seed", "6", "--fmus", str(both_built), "--output", str(tmp_path)]) == 2
     assert f"{NAME}.csv is of another run" in capsys.readouterr().err
     for path in made.iterdir():
