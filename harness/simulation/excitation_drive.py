@@ -148,7 +148,7 @@ def holding_slope(load: RoadLoad, mean: float, v_0: float) -> float:
 
 def sensed(results: np.ndarray, i: float, wheels: MeasurementWheels, seed: int) -> np.ndarray:
     """What the sensors of the car have recorded, every T_S: a field for each column of the file, with its unit in
-    brackets, as `harness.recordings` reads it.
+    brackets, as `driverecords` reads it.
 
     The speed of the wheels is that of the last message, its validity and counter as received. The torque demand is what
     motor control receives at the sample and holds until the next.

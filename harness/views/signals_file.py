@@ -1,7 +1,7 @@
 """The signals of a run as a file, with the unit of each: CSV, Parquet or ASAM MDF 4.
 
 The same signals give the same bytes; a simulated run has no date, so that of an MDF file is the first one there is. All
-are read again by `harness.recordings`, and numbers and times are then the same.
+are read again by `driverecords`, and numbers and times are then the same.
 """
 
 from __future__ import annotations

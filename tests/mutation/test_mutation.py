@@ -25,7 +25,7 @@ def test_every_room_gets_some_faults_and_the_others_go_by_lines(size: int) -> No
 
 
 def test_what_is_drawn_depends_on_the_seed_and_not_on_where_a_line_stands() -> None:
-    assert ONE.lot(1) == ONE._replace(file="harness/base/code.py", line=9, place=99).lot(1)
+    assert ONE.lot(1) == ONE._replace(file="harness/loop/code.py", line=9, place=99).lot(1)
     assert ONE.lot(1) != ONE.lot(2)
     assert ONE.lot(1) != ONE._replace(new="0.8").lot(1)
 

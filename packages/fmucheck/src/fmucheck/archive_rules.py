@@ -33,7 +33,7 @@ class Archive(NamedTuple):
 
 
 def _refusing(name: str, title: str, clause: Clause = OURS) -> Rule:
-    """What `harness.cosimulation.fmu_archive` refuses under that name."""
+    """What `fmuloop.fmu_archive` refuses under that name."""
 
     def problems(fmu: Archive) -> Iterator[str]:
         problems_there = fmu_archive.problems(fmu.entries, fmu.limits)

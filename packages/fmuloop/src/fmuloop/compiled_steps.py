@@ -121,7 +121,7 @@ def _watched(instance: Instance) -> Any:
 
 
 class CompiledSteps:
-    """The same as `harness.cosimulation.steps.interpreted`; only where there is a LIBRARY."""
+    """The same as `fmuloop.steps.interpreted`; only where there is a LIBRARY."""
 
     def __init__(self, begin: Sequence[Call], end: Sequence[Call], row: bytearray, known: int) -> None:
         assert LIBRARY is not None

@@ -33,7 +33,7 @@ LOG = logging.getLogger(__name__)
 
 
 class IsolatedLoop:
-    """Loaded FMUs that run together in a process of their own; see `harness.cosimulation.master.Loop`."""
+    """Loaded FMUs that run together in a process of their own; see `fmuloop.master.Loop`."""
 
     def __init__(self, isolated: IsolatedProcess, fitted: Fit) -> None:
         self._isolated = isolated

@@ -39,7 +39,7 @@ REFUSED = (fmi2Discard, fmi2Error)
 
 @contextmanager
 def opened(fitted: Fit, folder: Path | None, make_steps: MakeSteps) -> Iterator["Loop"]:
-    """The FMUs of a system, loaded into this process and wired; see `harness.cosimulation.loading.loaded`.
+    """The FMUs of a system, loaded into this process and wired; see `fmuloop.loading.loaded`.
 
     Raises:
         SimulationError: an FMU cannot be loaded.

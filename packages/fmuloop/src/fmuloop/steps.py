@@ -1,4 +1,4 @@
-"""The steps of the master, call by call in Python; `harness.cosimulation.compiled_steps` makes the same ones faster."""
+"""The steps of the master, call by call in Python; `fmuloop.compiled_steps` makes the same ones faster."""
 
 from collections.abc import Callable, Sequence
 from ctypes import c_double
