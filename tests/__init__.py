@@ -1,10 +1,13 @@
 """Sentences about the physics, the FMUs and the loop, in the rooms of what they are about."""
 
+import sys
 from pathlib import Path
 from shutil import copy, copytree, ignore_patterns
 
 ROOT = Path(__file__).resolve().parents[1]
 """Of the checkout."""
+
+sys.path.append(str(ROOT / "tests" / "shared"))  # pytest has it too; what runs tests' code without it has not
 
 
 def copied_sources(folder: Path, *packages: str) -> Path:

@@ -4,8 +4,6 @@ from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
-from fmutesting.legal_hosts import HOSTS
-
 from driveline.fmus.catalogue import FMUS
 from driveline.harness.identification import car_file, diagnostics, estimator, identify, noise, step, torque_loop
 from driveline.harness.identification.priors import PRIORS
@@ -34,6 +32,7 @@ from driverecords.thresholds import Threshold
 from fmublocks.description.documentation import tables, timing
 from fmublocks.fmu import Fmu
 from fmucheck.checking import RULES
+from tests.shared.fmutesting.legal_hosts import HOSTS
 from toolground.file_limits import LIMITS
 
 CHECKS = Path(__file__).with_name("recording_checks.md").read_text(encoding="utf-8")

@@ -142,7 +142,7 @@ def judged(case: Case, damped: bool, loop: ResolvedLoop, follow: bool = True) ->
 def all_judged(drives: Sequence[tuple[Case, bool]]) -> list[Judged]:
     """What is found odd in drives."""
     loops = {plant: resolve(built(plant)) for plant in PLANTS}
-    return run_many(lambda drive: judged(*drive, loops[drive[0].plant]), drives, label="drives")
+    return run_many(lambda drive: judged(drive[0], drive[1], loops[drive[0].plant]), drives, label="drives")
 
 
 def plants_table(drives: Sequence[Judged]) -> Table:
