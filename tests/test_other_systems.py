@@ -19,16 +19,17 @@ LACKING = {
 PROGRAM = """
 import builtins, importlib, os, signal, sys
 names, absent, lacking = {names!r}, {absent!r}, {lacking!r}
+OURS = ("driveline", "driverecords", "fmublocks", "fmucheck", "fmuloop", "toolground")
 for name in names:  # other packages have what they need
     importlib.import_module(name)
-for name in [name for name in sys.modules if name.partition(".")[0] == "driveline"]:
+for name in [name for name in sys.modules if name.partition(".")[0] in OURS]:
     del sys.modules[name]
 for module, attributes in lacking.items():
     for attribute in attributes:
         delattr(sys.modules[module], attribute)
 usual = builtins.__import__
 def guarded(name, globals=None, *others, **named):
-    if name in absent and (globals or {{}}).get("__name__", "").startswith("driveline"):
+    if name in absent and (globals or {{}}).get("__name__", "").startswith(OURS):
         raise ImportError(name)
     return usual(name, globals, *others, **named)
 builtins.__import__ = guarded

@@ -46,7 +46,7 @@ def build_fmus(
     from .one_car import of_one_car
     from .parameter_files import read_files, require_taken
 
-    fmus = [name if isinstance(name, Fmu) else _named(name) for name in dict.fromkeys(names or list(FMUS))]
+    fmus = [name if isinstance(name, Fmu) else _named(name) for name in _each_once(names or list(FMUS))]
     own = [fmu for fmu in fmus if fmu not in EVERY.values()]
     if taken := [fmu.name for fmu in own if fmu.name in EVERY]:
         raise BuildError(f"{taken[0]} is an FMU of the project, which runs by this name; give the block another name")
@@ -61,6 +61,10 @@ def build_fmus(
         yield from blocks.build_fmus(theirs, folder, "native", platform, fmi)
     else:
         yield from blocks.build_fmus(cars, folder, builds, platform, fmi)
+
+
+def _each_once(names: Sequence[str | Fmu]) -> list[str | Fmu]:
+    return [name for k, name in enumerate(names) if name not in names[:k]]
 
 
 def refreshed(names: Sequence[str], folder: Path, build: str) -> list[Path]:

@@ -111,6 +111,7 @@ def test_what_was_written_before_the_end_is_read_and_nothing_is_waited_for(inter
     with pytest.raises(EOFError):
         interpreter.read(1)
     interpreter.send(bytes(10**6))  # goes nowhere
+    interpreter.process.wait(60.0)
     assert interpreter.end()
     assert interpreter.process.returncode == 7
 

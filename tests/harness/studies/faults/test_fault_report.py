@@ -135,7 +135,7 @@ def test_the_figure_of_a_case_names_its_campaign(options, caption):
 @pytest.mark.slow
 def test_a_case_that_is_run_again_measures_the_same(outcomes, injector, loops, tmp_path, monkeypatch):
     runs = []
-    monkeypatch.setattr(fault_injection, "run", lambda *given: runs.append(1) or run(*given))
+    monkeypatch.setattr("fmuloop.campaign.run", lambda *given: runs.append(1) or run(*given))
     again, files = write_case(2, 1, fault_injection.FaultRunner(injector, loops), tmp_path)
     assert len(runs) == 3
     assert again == outcomes[1]
