@@ -29,7 +29,7 @@ BEFORE_START: Callable[[], object] | None = None
 """What `subprocess` calls before a program starts: has it killed when the thread that starts it ends, however that
 ends. Other systems than Linux tell no program that its parent was killed."""
 if sys.platform == "linux":  # loaded here, since after a fork another thread may hold the lock of the loader
-    BEFORE_START = partial(ctypes.CDLL(None).prctl, SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+    BEFORE_START = partial(ctypes.CDLL(None).prctl, SET_PARENT_DEATH_SIGNAL, getattr(signal, "SIGKILL", 9))
 
 
 class Child:
