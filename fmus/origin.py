@@ -14,6 +14,6 @@ def sources_digest() -> str:
 
 
 def is_stale(path: Path) -> bool:
-    """Whether an FMU of the project was not made from the sources that are there."""
-    record = origin.origin_of(path)
-    return record is None or record.sources != sources_digest()
+    """Whether an FMU was not made from the sources that are there; one of the user's own from those of fmublocks."""
+    tells = origin.origin_of(path)
+    return tells is None or tells.sources not in (sources_digest(), origin.sources_digest(None))
